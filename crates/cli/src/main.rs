@@ -1,0 +1,2 @@
+//! The `whitted` command.
+fn main() {}

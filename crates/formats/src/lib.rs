@@ -1,0 +1,1 @@
+//! Scene, mesh and image files.

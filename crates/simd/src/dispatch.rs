@@ -1,0 +1,24 @@
+//! The one place where a kernel meets an instruction set.
+
+use crate::{Level, Simd};
+
+/// An algorithm written once, for any instruction set.
+///
+/// `run`, and everything that it calls per ray, must be `#[inline(always)]`.
+pub trait Kernel {
+    /// What the kernel returns.
+    type Output;
+
+    /// Do the work with the instruction set of `token`.
+    fn run<S: Simd>(self, token: S) -> Self::Output;
+}
+
+/// Run `kernel` with the instruction set of `level`.
+///
+/// Costs 3 to 4 ns: dispatch once per batch, never per ray.
+#[inline]
+pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
+    match level {
+        Level::Scalar(token) => kernel.run(token),
+    }
+}

@@ -1,0 +1,1 @@
+//! Portable elementary functions, built from exact operations: the same bits on every CPU.

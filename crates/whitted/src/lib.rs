@@ -1,0 +1,1 @@
+//! The Whitted ray tracer.
