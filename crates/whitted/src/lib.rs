@@ -1,1 +1,21 @@
-//! The Whitted ray tracer.
+//! A fast, exact, deterministic Whitted-style ray tracer and ray-query library for the CPU.
+//!
+//! # What this crate knows
+//! Rays, primitives, trees, surfaces, scenes and the render loop, in this order of layers:
+//! [`math`] ← [`ray`] ← [`geometry`] ← { [`tree`], [`shading`] } ← [`scene`] ← [`render`].
+//!
+//! # Invariants
+//! * It opens no file, prints nothing, reads no environment and asks no clock.
+//! * A pixel depends on scene, [`scene::Settings`] and its coordinates only: never on threads, regions, batch order,
+//!   walk, instruction set or tree ([`render::Execution`]).
+//! * No `unsafe`; no platform math library (`simd::math` has portable functions).
+
+#![forbid(unsafe_code)]
+
+pub mod geometry;
+pub mod math;
+pub mod ray;
+pub mod render;
+pub mod scene;
+pub mod shading;
+pub mod tree;

@@ -1,0 +1,25 @@
+//! Primitives: what they are, where they are, how a ray meets them.
+//!
+//! One primitive a file: bounds, clipped bounds, intersection, error bound, surface point. [`Shape`] is the closed list
+//! of those that are neither triangle nor sphere; [`Primitives`] holds all of a scene in one number space.
+
+mod boxed;
+mod cone;
+mod cylinder;
+mod disc;
+mod plane;
+mod primitives;
+mod shape;
+mod sphere;
+mod surface;
+mod triangle;
+
+pub use boxed::Boxed;
+pub use cone::Cone;
+pub use cylinder::Cylinder;
+pub use disc::Disc;
+pub use plane::Plane;
+
+pub use shape::{Crossings, Shape};
+
+pub use surface::SurfacePoint;

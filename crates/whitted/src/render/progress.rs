@@ -1,0 +1,38 @@
+//! Telling the caller how far the work is, and being told to stop.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Receives the picture region by region, from any thread.
+pub trait Progress: Sync {
+    /// Phase 1 (all regions once) or 2 (flagged pixels) has finished `done` of `total` regions.
+    fn regions_done(&self, phase: u32, done: usize, total: usize);
+}
+
+/// A sink that ignores everything.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn regions_done(&self, _: u32, _: usize, _: usize) {}
+}
+
+/// A flag that stops a render within one region.
+#[derive(Debug, Default)]
+pub struct Cancel(AtomicBool);
+
+impl Cancel {
+    /// A flag that is not set.
+    pub const fn new() -> Self {
+        Self(AtomicBool::new(false))
+    }
+
+    /// Ask the render to stop.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// True once [`cancel`](Self::cancel) was called.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
