@@ -1,2 +1,32 @@
-//! Project automation.
-fn main() {}
+//! Project automation, run as `cargo xtask COMMAND`.
+//!
+//! `ci` is everything that must pass before a change lands, and exactly what the CI runs; each of its steps also runs
+//! alone by its name. It knows cargo and the repository's text; it does not know what the program computes.
+
+mod ci;
+mod tidy;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["ci"] => ci::run_all(),
+        [name] => ci::run_one(name).unwrap_or_else(usage),
+        _ => usage(),
+    }
+}
+
+fn usage() -> ExitCode {
+    eprintln!("usage: cargo xtask COMMAND\n\n  {:<8} every step below, in this order", "ci");
+    for step in ci::STEPS {
+        eprintln!("  {:<8} {}", step.name, step.purpose);
+    }
+    ExitCode::from(2)
+}
+
+/// The repository's root: the folder above this package.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies inside the repository").to_path_buf()
+}

@@ -11,6 +11,7 @@
 //! * No `unsafe`; no platform math library (`simd::math` has portable functions).
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods, clippy::print_stdout, clippy::print_stderr))]
 
 pub mod geometry;
 pub mod math;
