@@ -20,5 +20,11 @@ pub trait Kernel {
 pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
     match level {
         Level::Scalar(token) => kernel.run(token),
+        #[cfg(target_arch = "x86_64")]
+        Level::Sse42(token) => token.enter(kernel),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(token) => token.enter(kernel),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(token) => token.enter(kernel),
     }
 }

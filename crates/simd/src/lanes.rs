@@ -56,11 +56,10 @@ pub trait Simd: Copy + Send + Sync + Debug + 'static {
         let mut count = 0;
         for &lane in order {
             let lane = usize::from(lane & 15);
-            if mask >> lane & 1 != 0 {
-                out_keys[count] = stored[lane];
-                out_values[count] = values[lane];
-                count += 1;
-            }
+            // Store always, advance if set: the branch would be a coin toss. The last store is at 15 or before.
+            out_keys[count & 15] = stored[lane];
+            out_values[count & 15] = values[lane];
+            count += usize::from(mask >> lane & 1 != 0);
         }
         count
     }
@@ -154,9 +153,10 @@ pub trait F32Lanes:
     /// Lanes of a two's complement integer, rounded to nearest even.
     fn from_int(value: Self::U32) -> Self;
 
-    /// The smallest lane; lanes must not be NaN.
+    /// The smallest lane, by [`min`](Self::min) of the lower half with the upper until one is left (which settles
+    /// the sign of a zero and what a NaN does).
     fn reduce_min(self) -> f32;
-    /// The largest lane; lanes must not be NaN.
+    /// The largest lane, by [`max`](Self::max) of the lower half with the upper until one is left.
     fn reduce_max(self) -> f32;
 }
 

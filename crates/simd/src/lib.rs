@@ -20,10 +20,16 @@ mod lanes;
 mod level;
 pub mod math;
 mod memory;
+#[cfg(target_arch = "x86_64")]
+mod pair;
 mod scalar;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 pub use dispatch::{Kernel, dispatch};
 pub use lanes::{F32Lanes, MaskLanes, Simd, U32Lanes};
 pub use level::Level;
 pub use memory::advise_huge_pages;
 pub use scalar::{Scalar, ScalarF32, ScalarMask, ScalarU32};
+#[cfg(target_arch = "x86_64")]
+pub use x86::{Avx2, Avx512, Sse42};

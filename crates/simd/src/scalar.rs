@@ -104,6 +104,20 @@ fn zip<A: Copy, B: Copy, C, const N: usize>(a: [A; N], b: [B; N], f: impl Fn(A, 
     std::array::from_fn(|i| f(a[i], b[i]))
 }
 
+/// Fold the upper half of the lanes into the lower half until one is left. `N` is a power of two.
+#[inline(always)]
+fn fold_halves<const N: usize>(mut lanes: [f32; N], f: impl Fn(f32, f32) -> f32) -> f32 {
+    const { assert!(N.is_power_of_two()) };
+    let mut half = N / 2;
+    while half > 0 {
+        for i in 0..half {
+            lanes[i] = f(lanes[i], lanes[i + half]);
+        }
+        half /= 2;
+    }
+    lanes[0]
+}
+
 impl<const N: usize> F32Lanes for ScalarF32<N>
 where
     [f32; N]: Default,
@@ -209,11 +223,11 @@ where
     }
     #[inline(always)]
     fn reduce_min(self) -> f32 {
-        self.0.into_iter().fold(f32::INFINITY, |a, b| if a < b { a } else { b })
+        fold_halves(self.0, |a, b| if a < b { a } else { b })
     }
     #[inline(always)]
     fn reduce_max(self) -> f32 {
-        self.0.into_iter().fold(f32::NEG_INFINITY, |a, b| if a > b { a } else { b })
+        fold_halves(self.0, |a, b| if a > b { a } else { b })
     }
 }
 

@@ -1,0 +1,37 @@
+//! AVX2 with FMA: eight lanes a register.
+
+use super::avx2_x8::F32x8;
+use super::left_pack;
+use super::x4::{F32x4, Sse};
+use crate::Simd;
+use crate::pair::Pair;
+use std::arch::x86_64::*;
+
+token! {
+    /// The token of AVX2 with FMA and the bit manipulation that came with them (x86-64-v3).
+    Avx2: "avx2" "fma" "bmi1" "bmi2" "lzcnt" "movbe" "f16c" "popcnt"
+}
+
+impl Simd for Avx2 {
+    type F32x4 = F32x4<Self>;
+    type F32x8 = F32x8;
+    type F32x16 = Pair<F32x8>;
+    const NAME: &'static str = "avx2";
+
+    #[inline(always)]
+    fn append_matching(self, masks: &[u16], ids: &[u16], bit: u16, out: &mut [u16]) -> usize {
+        left_pack::append_matching(self, masks, ids, bit, out)
+    }
+}
+
+impl Sse for Avx2 {
+    #[inline(always)]
+    fn fma(self, a: __m128, b: __m128, c: __m128) -> __m128 {
+        // SAFETY: the token exists, so the CPU has its features.
+        unsafe { _mm_fmadd_ps(a, b, c) }
+    }
+    #[inline(always)]
+    fn mul_add_fast(self, a: __m128, b: __m128, c: __m128) -> __m128 {
+        self.fma(a, b, c)
+    }
+}

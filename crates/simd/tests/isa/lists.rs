@@ -1,0 +1,85 @@
+//! The operations on lists that a token has: appending and compressing.
+
+use crate::common::{SplitMix64, levels};
+use simd::{F32Lanes, Kernel, Level, Simd, dispatch};
+
+struct Append<'a>(&'a [u16], &'a [u16], u16, &'a mut [u16]);
+
+impl Kernel for Append<'_> {
+    type Output = usize;
+    #[inline(always)]
+    fn run<S: Simd>(self, token: S) -> usize {
+        token.append_matching(self.0, self.1, self.2, self.3)
+    }
+}
+
+#[test]
+fn append_keeps_order_and_bounds() {
+    let mut random = SplitMix64(5);
+    for level in levels() {
+        for length in (0..200).chain([4095, 4096]) {
+            let density = random.next_u32() | random.next_u32();
+            let masks: Vec<u16> = (0..length).map(|_| (random.next_u32() & density) as u16).collect();
+            let ids: Vec<u16> = (0..length).map(|_| random.next_u32() as u16).collect();
+            for bit in (0..16).map(|i| 1 << i) {
+                let kept = |i: &usize| masks[*i] & bit != 0;
+                let expected: Vec<u16> = (0..length).filter(kept).map(|i| ids[i]).collect();
+                let mut out = vec![7; length + 40];
+                let count = dispatch(level, Append(&masks, &ids, bit, &mut out[..length + 32]));
+                assert_eq!(&out[..count], expected, "{level} {length} {bit}");
+                assert_eq!(out[length + 32..], [7; 8], "{level} wrote beyond its output");
+            }
+        }
+    }
+}
+
+#[test]
+fn append_refuses_short_outputs() {
+    for level in levels() {
+        for (masks, ids, out) in [(40, 40, 71), (40, 39, 100), (0, 0, 31)] {
+            let (masks, ids, mut out) = (vec![1; masks], vec![1; ids], vec![0; out]);
+            let run = std::panic::AssertUnwindSafe(|| dispatch(level, Append(&masks, &ids, 1, &mut out)));
+            assert!(std::panic::catch_unwind(run).is_err(), "{level}");
+        }
+    }
+}
+
+struct Compress<'a>(u16, &'a [u8; 16], &'a [f32; 16], &'a [u32; 16]);
+
+impl Kernel for Compress<'_> {
+    type Output = (usize, [f32; 16], [u32; 16]);
+    #[inline(always)]
+    fn run<S: Simd>(self, token: S) -> Self::Output {
+        let (mut keys, mut values) = ([0.0; 16], [0; 16]);
+        let lanes = S::F32x16::load(token, self.2);
+        let count = token.compress_in_order(self.0, self.1, lanes, self.3, &mut keys, &mut values);
+        (count, keys, values)
+    }
+}
+
+fn check_compress(level: Level, mask: u16, random: &mut SplitMix64) {
+    let mut order: [u8; 16] = std::array::from_fn(|i| i as u8);
+    for i in (1..16).rev() {
+        order.swap(i, random.next_u32() as usize % (i + 1));
+    }
+    let keys: [f32; 16] = std::array::from_fn(|_| random.next_f32());
+    let values: [u32; 16] = std::array::from_fn(|_| random.next_u32());
+    let kept: Vec<usize> = order.iter().map(|&i| usize::from(i)).filter(|i| mask >> i & 1 != 0).collect();
+    // The upper four bits of an order are ignored.
+    let order = order.map(|i| i | (random.next_u32() as u8) << 4);
+    let (count, out_keys, out_values) = dispatch(level, Compress(mask, &order, &keys, &values));
+    assert_eq!(count, kept.len(), "{level}");
+    for (at, i) in kept.into_iter().enumerate() {
+        assert_eq!((out_keys[at], out_values[at]), (keys[i], values[i]), "{level} {mask:#x} {order:?}");
+    }
+}
+
+#[test]
+fn compress_follows_the_order() {
+    let mut random = SplitMix64(6);
+    for level in levels() {
+        for mask in 0..=u16::MAX {
+            check_compress(level, mask, &mut random);
+        }
+    }
+}

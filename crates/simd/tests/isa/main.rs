@@ -1,0 +1,7 @@
+//! Every instruction set of this CPU against plain Rust.
+//!
+//! Set `WHITTED_REQUIRE_ISA` (for example to `avx512`) where a missing instruction set must fail, not pass unseen.
+
+mod common;
+mod lanes;
+mod lists;
