@@ -4,7 +4,10 @@ use crate::{Level, Simd};
 
 /// An algorithm written once, for any instruction set.
 ///
-/// `run`, and everything that it calls per ray, must be `#[inline(always)]`.
+/// `run`, and everything that it calls per ray, must be `#[inline(always)]`: a function that is not inlined is compiled
+/// without the instruction set and takes its lanes through memory. So closures over lanes must not be handed to
+/// functions of other crates that the compiler may leave outlined, such as `<[_; N]>::map`: see
+/// [`lanes_from_fn`](crate::lanes_from_fn). `examples/kernel.rs` shows the form.
 pub trait Kernel {
     /// What the kernel returns.
     type Output;

@@ -15,6 +15,7 @@
 //!   dispatched function is slow, never wrong.
 //! * This crate knows nothing about rays.
 
+mod array;
 mod dispatch;
 mod lanes;
 mod level;
@@ -26,6 +27,7 @@ mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+pub use array::lanes_from_fn;
 pub use dispatch::{Kernel, dispatch};
 pub use lanes::{F32Lanes, MaskLanes, Simd, U32Lanes};
 pub use level::Level;

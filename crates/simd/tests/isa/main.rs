@@ -3,5 +3,6 @@
 //! Set `WHITTED_REQUIRE_ISA` (for example to `avx512`) where a missing instruction set must fail, not pass unseen.
 
 mod common;
+mod fma;
 mod lanes;
 mod lists;
