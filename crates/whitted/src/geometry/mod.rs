@@ -7,19 +7,23 @@ mod boxed;
 mod cone;
 mod cylinder;
 mod disc;
+mod frustum;
 mod plane;
-mod primitives;
+pub(crate) mod primitives;
 mod shape;
-mod sphere;
+pub(crate) mod sphere;
 mod surface;
-mod triangle;
+pub(crate) mod triangle;
 
 pub use boxed::Boxed;
 pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
 pub use plane::Plane;
+pub use primitives::{Kind, MeshError, Primitives};
 
 pub use shape::{Crossings, Shape};
 
-pub use surface::SurfacePoint;
+pub use sphere::Sphere;
+pub use surface::{ShapePoint, SurfacePoint};
+pub use triangle::{ShearedRay, Triangle};

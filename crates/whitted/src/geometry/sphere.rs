@@ -1,1 +1,98 @@
-//! Spheres.
+//! The sphere.
+//!
+//! The line's nearest point to the centre is found first and the discriminant from its distance (Hearn and Baker;
+//! Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems 2019, chapter 7): no
+//! cancellation, however far away the ray starts. From inside, the far root is the hit. The paper (§2.2.2) calls an
+//! origin inside "terminate", which would make refraction impossible, and prints its equation with sign errors.
+
+use crate::math::{Vec3, Vec3f};
+use crate::ray::Ray;
+use simd::F32Lanes;
+
+/// A sphere; its surface is hit from outside and from inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// The middle.
+    pub center: Vec3f,
+    /// Radius, > 0.
+    pub radius: f32,
+}
+
+/// A ray prepared for spheres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(32))]
+pub(crate) struct SphereRay {
+    /// Origin.
+    pub origin: [f32; 3],
+    /// Direction.
+    pub direction: [f32; 3],
+    /// `1 / (direction · direction)`.
+    pub inverse_length_squared: f32,
+    padding: f32,
+}
+
+impl SphereRay {
+    /// Prepare a ray.
+    #[inline(always)]
+    pub(crate) fn new(origin: Vec3f, direction: Vec3f) -> Self {
+        Self {
+            origin: origin.to_array(),
+            direction: direction.to_array(),
+            inverse_length_squared: 1.0 / direction.length_squared(),
+            padding: 0.0,
+        }
+    }
+}
+
+/// Intersect one ray with as many spheres as there are lanes; return the hit lanes' mask and t.
+///
+/// Lanes hit where `t_min ≤ t ≤ t_max` for the near root, or for the far root if the near one lies before `t_min`. NaN
+/// anywhere is a miss.
+#[inline(always)]
+pub(crate) fn intersect<F: F32Lanes>(
+    token: F::Token,
+    ray: &SphereRay,
+    center: [F; 3],
+    radius_squared: F,
+    t_min: F,
+    t_max: F,
+) -> (F::Mask, F) {
+    let splat = |value| F::splat(token, value);
+    let direction = Vec3::from(ray.direction.map(splat));
+    let inverse = splat(ray.inverse_length_squared);
+    let from_center = Vec3::from(ray.origin.map(splat)) - Vec3::from(center);
+    // Walk to the point of the line that is nearest to the centre.
+    let middle = -(from_center.dot(direction)) * inverse;
+    let nearest = from_center + direction * middle;
+    // A line that passes by gives the root of a negative number, a NaN, and fails the comparisons.
+    let half_chord = ((radius_squared - nearest.dot(nearest)) * inverse).sqrt();
+    let (near, far) = (middle - half_chord, middle + half_chord);
+    let t = F::select(t_min.le(near), near, far);
+    (t_min.le(t) & t.le(t_max), t)
+}
+
+impl Sphere {
+    /// Recompute the parameter of a hit in double precision.
+    pub(crate) fn refine(&self, ray: &Ray, t: f32) -> f32 {
+        let (o, d) = (ray.origin.to_f64() - self.center.to_f64(), ray.direction.to_f64());
+        let inverse = 1.0 / d.length_squared();
+        let middle = -o.dot(d) * inverse;
+        let nearest = o + d * middle;
+        let radius = f64::from(self.radius);
+        let half_chord = ((radius * radius - nearest.length_squared()) * inverse).max(0.0).sqrt();
+        let root = if f64::from(t) < middle { middle - half_chord } else { middle + half_chord };
+        (root as f32).max(ray.t_min).min(ray.t_max)
+    }
+
+    /// Position and outward unit normal where a ray hits at `t`.
+    pub(crate) fn surface(&self, ray: &Ray, t: f32) -> (Vec3f, Vec3f) {
+        let center = self.center.to_f64();
+        let normal = (ray.origin.to_f64() + ray.direction.to_f64() * f64::from(t) - center).normalize();
+        ((center + normal * f64::from(self.radius)).to_f32(), normal.to_f32())
+    }
+
+    /// True if it cannot be intersected: not finite, or the radius is not positive.
+    pub(crate) fn is_degenerate(&self) -> bool {
+        !(self.center.is_finite() && self.radius.is_finite() && self.radius > 0.0)
+    }
+}

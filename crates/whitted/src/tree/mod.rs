@@ -1,11 +1,34 @@
-//! Finding what a ray hits: the builder, the trees, the walks and the brute-force oracle.
+//! Finding what a ray hits: the builder, the tree, the walks and the brute-force oracle.
+//!
+//! # Invariants
+//! * There is one definition of a hit, in [`geometry`](crate::geometry): every walk offers the same candidates with
+//!   bit-equal t to a goal that prefers the smaller (t, primitive), so the answer depends on neither tree, walk,
+//!   instruction set nor order.
+//! * Boxes are padded so that no candidate is lost to rounding (`wide::PADDING`).
+//! * References, depth and memory are bounded for any input.
+
+mod bit_set;
+mod brute_force;
+mod build;
+mod goal;
+mod leaf;
+mod query;
+mod validate;
+mod walk;
+mod wide;
+
+pub use bit_set::BitSet;
+pub use build::BuildOptions;
+pub use goal::Occlusion;
+pub use query::{Counts, Query, Scratch};
+pub use wide::{Tree, TreeReport};
 
 /// Which splits the builder may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum TreeKind {
     /// No tree: every ray against every primitive.
     None,
-    /// Spatial splits only: the cells of a kd-tree.
+    /// Spatial splits only: the cells of a kd-tree, shrunk to their content.
     Kd,
     /// Object splits only: quick to build and refittable.
     Fast,

@@ -1,0 +1,23 @@
+//! What nodes and leaves cost.
+
+use super::super::leaf::BLOCK;
+use super::BuildOptions;
+use crate::math::Aabb;
+
+/// Expected cost of testing `count` primitives.
+///
+/// The mean of the exact number of blocks and the fraction: a leaf with one primitive costs less than a full one,
+/// since it may yet be merged, but more than an eighth.
+#[inline(always)]
+pub(super) fn leaf(options: &BuildOptions, count: usize) -> f32 {
+    options.intersection_cost * 0.5 * (count.div_ceil(BLOCK) as f32 + count as f32 / BLOCK as f32)
+}
+
+/// Expected cost of a node of half area `area` with two children.
+#[inline(always)]
+pub(super) fn split(options: &BuildOptions, area: f32, left: (Aabb, usize), right: (Aabb, usize)) -> f32 {
+    let side = |(bounds, count): (Aabb, usize)| bounds.half_area() * leaf(options, count);
+    // In a box without area every ray that enters it enters both halves.
+    let chance = if area > 0.0 { (side(left) + side(right)) / area } else { leaf(options, left.1 + right.1) };
+    options.traversal_cost + chance
+}

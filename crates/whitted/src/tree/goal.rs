@@ -1,0 +1,83 @@
+//! What a walk looks for: the type parameter that makes one algorithm answer every kind of query.
+
+use super::BitSet;
+use crate::ray::NONE;
+
+/// Receives every candidate that a walk finds and says how far the ray still has to be followed.
+pub(crate) trait Goal {
+    /// A primitive is hit at `t`, within the ray's range, `limit` being its upper end so far. Returns the new limit if
+    /// the range shrinks; negative infinity ends the ray.
+    fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32>;
+}
+
+/// The hit with the smallest (t, primitive).
+pub(crate) struct Closest<'a> {
+    /// Best primitive of each ray so far; [`NONE`] for none.
+    pub primitive: &'a mut [u32],
+}
+
+impl Goal for Closest<'_> {
+    #[inline(always)]
+    fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32> {
+        let better = t < limit || (t == limit && primitive < self.primitive[ray]);
+        better.then(|| {
+            self.primitive[ray] = primitive;
+            t
+        })
+    }
+}
+
+/// The smallest (t, primitive) that is greater than a given one: the next of all hits in order.
+pub(crate) struct Next<'a> {
+    /// Best primitive of each ray so far; [`NONE`] for none.
+    pub primitive: &'a mut [u32],
+    /// The hit after which to look.
+    pub after: &'a [(f32, u32)],
+}
+
+impl Goal for Next<'_> {
+    #[inline(always)]
+    fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32> {
+        let (after_t, after_primitive) = self.after[ray];
+        let is_after = t > after_t || (t == after_t && primitive > after_primitive);
+        if !is_after {
+            return None;
+        }
+        Closest { primitive: self.primitive }.offer(ray, t, primitive, limit)
+    }
+}
+
+/// What stands between the ends of a ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Occlusion {
+    /// Nothing.
+    #[default]
+    Clear,
+    /// Only primitives that are not opaque.
+    Filtered,
+    /// Something opaque.
+    Blocked,
+}
+
+/// Whether anything opaque is hit.
+pub(crate) struct Any<'a> {
+    /// The answer for each ray so far.
+    pub occlusion: &'a mut [Occlusion],
+    /// Opaque primitives; `None` if all are.
+    pub opaque: Option<&'a BitSet>,
+}
+
+impl Goal for Any<'_> {
+    #[inline(always)]
+    fn offer(&mut self, ray: usize, _: f32, primitive: u32, _: f32) -> Option<f32> {
+        if self.opaque.is_none_or(|set| set.contains(primitive)) {
+            self.occlusion[ray] = Occlusion::Blocked;
+            return Some(f32::NEG_INFINITY);
+        }
+        self.occlusion[ray] = Occlusion::Filtered;
+        None
+    }
+}
+
+const _: () = assert!(NONE == u32::MAX, "every primitive must come before NONE in the order of ties");

@@ -1,0 +1,196 @@
+//! Leaf blocks: primitives of one kind, eight at a time, as rows.
+
+use super::goal::Goal;
+use crate::geometry::sphere::{self, SphereRay};
+use crate::geometry::triangle::{self, renamed};
+use crate::geometry::{Primitives, ShearedRay};
+use crate::ray::NONE;
+use simd::{F32Lanes, MaskLanes, Simd};
+
+/// Primitives in a block.
+pub(super) const BLOCK: usize = 8;
+
+/// Eight triangles, unused lanes NaN.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct TriangleBlock {
+    /// Row `3·vertex + axis`: a ray's renaming of axes is a choice of rows.
+    rows: [[f32; BLOCK]; 9],
+    primitive: [u32; BLOCK],
+}
+
+/// Eight spheres, unused lanes NaN.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct SphereBlock {
+    center: [[f32; BLOCK]; 3],
+    radius_squared: [f32; BLOCK],
+    primitive: [u32; BLOCK],
+}
+
+/// Eight primitives that are intersected one by one; unused ones are [`NONE`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ShapeBlock {
+    primitive: [u32; BLOCK],
+}
+
+const _: () = assert!(size_of::<TriangleBlock>() == 320, "five cache lines");
+const _: () = assert!(size_of::<SphereBlock>() == 160, "two and a half cache lines");
+
+/// What a leaf's blocks hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum LeafKind {
+    Triangles,
+    Spheres,
+    Shapes,
+}
+
+/// All leaf blocks of a tree.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Leaves {
+    pub triangles: Vec<TriangleBlock>,
+    pub spheres: Vec<SphereBlock>,
+    pub shapes: Vec<ShapeBlock>,
+}
+
+impl Leaves {
+    /// Append blocks for `ids`, all of `kind`; return the number of the first.
+    pub(super) fn push(&mut self, primitives: &Primitives, scale: f32, kind: LeafKind, ids: &[u32]) -> usize {
+        let chunks = ids.chunks(BLOCK);
+        match kind {
+            LeafKind::Triangles => {
+                extend(&mut self.triangles, chunks.map(|c| TriangleBlock::new(primitives, scale, c)))
+            }
+            LeafKind::Spheres => extend(&mut self.spheres, chunks.map(|c| SphereBlock::new(primitives, scale, c))),
+            LeafKind::Shapes => extend(&mut self.shapes, chunks.map(|c| ShapeBlock { primitive: padded_ids(c) })),
+        }
+    }
+
+    /// The primitives of `count` blocks from `first` on.
+    pub(super) fn primitives(&self, kind: LeafKind, first: usize, count: usize) -> impl Iterator<Item = u32> {
+        (first..first + count)
+            .flat_map(move |block| match kind {
+                LeafKind::Triangles => self.triangles[block].primitive,
+                LeafKind::Spheres => self.spheres[block].primitive,
+                LeafKind::Shapes => self.shapes[block].primitive,
+            })
+            .filter(|&id| id != NONE)
+    }
+
+    /// Bytes of all blocks.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.triangles[..]) + size_of_val(&self.spheres[..]) + size_of_val(&self.shapes[..])
+    }
+}
+
+/// Append `items`; return the index of the first.
+fn extend<T>(all: &mut Vec<T>, items: impl Iterator<Item = T>) -> usize {
+    let first = all.len();
+    all.extend(items);
+    first
+}
+
+fn padded_ids(ids: &[u32]) -> [u32; BLOCK] {
+    std::array::from_fn(|lane| ids.get(lane).copied().unwrap_or(NONE))
+}
+
+impl TriangleBlock {
+    fn new(primitives: &Primitives, scale: f32, ids: &[u32]) -> Self {
+        let mut rows = [[f32::NAN; BLOCK]; 9];
+        for (lane, &id) in ids.iter().enumerate() {
+            for (vertex, position) in primitives.triangle(id as usize).vertices.into_iter().enumerate() {
+                for axis in 0..3 {
+                    rows[3 * vertex + axis][lane] = position[axis] * scale;
+                }
+            }
+        }
+        Self { rows, primitive: padded_ids(ids) }
+    }
+
+    /// Offer the triangles that `ray` hits.
+    #[inline(always)]
+    pub(super) fn intersect<S: Simd, G: Goal>(
+        &self,
+        token: S,
+        goal: &mut G,
+        index: usize,
+        ray: &ShearedRay,
+        t_min: f32,
+        limit: &mut f32,
+    ) {
+        let row = |vertex: usize, axis: usize| S::F32x8::load(token, &self.rows[3 * vertex + axis]);
+        let [x, y, z] = renamed((ray.axis % 3) as usize);
+        let vertices = [0, 1, 2].map(|vertex| [row(vertex, x), row(vertex, y), row(vertex, z)]);
+        let (t_min, t_max) = (S::F32x8::splat(token, t_min), S::F32x8::splat(token, *limit));
+        let (hit, t) = triangle::intersect(token, ray, vertices, t_min, t_max);
+        offer_lanes(goal, index, hit.bits(), t, &self.primitive, limit);
+    }
+}
+
+impl SphereBlock {
+    fn new(primitives: &Primitives, scale: f32, ids: &[u32]) -> Self {
+        let mut block =
+            Self { center: [[f32::NAN; BLOCK]; 3], radius_squared: [f32::NAN; BLOCK], primitive: padded_ids(ids) };
+        for (lane, &id) in ids.iter().enumerate() {
+            let sphere = &primitives.spheres()[(id - primitives.first_sphere()) as usize];
+            for axis in 0..3 {
+                block.center[axis][lane] = sphere.center[axis] * scale;
+            }
+            let radius = sphere.radius * scale;
+            block.radius_squared[lane] = radius * radius;
+        }
+        block
+    }
+
+    /// Offer the spheres that `ray` hits.
+    #[inline(always)]
+    pub(super) fn intersect<S: Simd, G: Goal>(
+        &self,
+        token: S,
+        goal: &mut G,
+        index: usize,
+        ray: &SphereRay,
+        t_min: f32,
+        limit: &mut f32,
+    ) {
+        let load = |row| S::F32x8::load(token, row);
+        let center = [load(&self.center[0]), load(&self.center[1]), load(&self.center[2])];
+        let (t_min, t_max) = (S::F32x8::splat(token, t_min), S::F32x8::splat(token, *limit));
+        let (hit, t) = sphere::intersect(token, ray, center, load(&self.radius_squared), t_min, t_max);
+        offer_lanes(goal, index, hit.bits(), t, &self.primitive, limit);
+    }
+}
+
+impl ShapeBlock {
+    /// The primitives, without the unused lanes.
+    pub(super) fn ids(&self) -> impl Iterator<Item = u32> {
+        self.primitive.into_iter().filter(|&id| id != NONE)
+    }
+}
+
+/// Offer every lane of `bits` to the goal; the limit shrinks as it accepts.
+#[inline(always)]
+fn offer_lanes<F: F32Lanes<Array = [f32; BLOCK]>, G: Goal>(
+    goal: &mut G,
+    index: usize,
+    mut bits: u32,
+    t: F,
+    primitive: &[u32; BLOCK],
+    limit: &mut f32,
+) {
+    if bits == 0 {
+        return;
+    }
+    let mut stored = [0.0; BLOCK];
+    t.store(&mut stored);
+    while bits != 0 {
+        let lane = bits.trailing_zeros() as usize % BLOCK;
+        bits &= bits - 1;
+        // A lane was measured against the limit before the lanes ahead of it shortened the ray.
+        if stored[lane] <= *limit
+            && let Some(shorter) = goal.offer(index, stored[lane], primitive[lane], *limit)
+        {
+            *limit = shorter;
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Asking a tree: batches in, answers out.
+
+use super::goal::{Any, Closest, Goal, Next};
+use super::walk::{self, Lists, PreparedRays};
+use super::{BitSet, Occlusion, Tree, TreeKind, WalkKind, brute_force};
+use crate::geometry::Primitives;
+use crate::ray::{HitBatch, RayBatch};
+use simd::Level;
+use std::ops::{AddAssign, Range};
+
+/// A tree, the primitives that it was built over, and how to walk it.
+#[derive(Clone, Copy, Debug)]
+pub struct Query<'a> {
+    /// The tree.
+    pub tree: &'a Tree,
+    /// The primitives over which the tree was built, unchanged.
+    pub primitives: &'a Primitives,
+    /// The instruction set; no answer depends on it.
+    pub level: Level,
+    /// The walk; no answer depends on it.
+    pub walk: WalkKind,
+}
+
+/// What the walks did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Primitives tested against a ray.
+    pub primitive_tests: u64,
+    /// Nodes visited by a ray.
+    pub node_steps: u64,
+}
+
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.primitive_tests += other.primitive_tests;
+        self.node_steps += other.node_steps;
+    }
+}
+
+/// Memory of the walks, kept between calls: one for each thread.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    pub(super) rays: PreparedRays,
+    pub(super) lists: Lists,
+}
+
+/// Rays that are walked together; ray numbers within such a chunk fit 16 bits.
+pub(super) const CHUNK: usize = 4096;
+
+impl Query<'_> {
+    /// The first hit of each ray; `hits` becomes as long as `rays`.
+    ///
+    /// Of several primitives at the same t the one with the lowest number is reported.
+    pub fn closest_hit(&self, rays: &RayBatch, hits: &mut HitBatch, scratch: &mut Scratch) -> Counts {
+        hits.reset(rays.len());
+        let mut counts = Counts::default();
+        for chunk in chunks(rays.len()) {
+            let primitive = &mut hits.primitive[chunk.clone()];
+            counts += self.walk(rays, chunk.clone(), &mut Closest { primitive }, scratch);
+            scratch.rays.found(&hits.primitive[chunk.clone()], &mut hits.t[chunk]);
+        }
+        self.refine(rays, hits);
+        counts
+    }
+
+    /// The first hit of each ray that comes after `after`, in the order of (t, primitive); advances `after` to it.
+    ///
+    /// Start with `(f32::NEG_INFINITY, 0)` and call again with the same slice: each hit of each ray is found once, in
+    /// order. The t in `after` is the one by which hits are ordered; `hits` has the refined one.
+    ///
+    /// # Panics
+    /// If `after` is not as long as `rays`.
+    pub fn next_hit(
+        &self,
+        rays: &RayBatch,
+        after: &mut [(f32, u32)],
+        hits: &mut HitBatch,
+        scratch: &mut Scratch,
+    ) -> Counts {
+        assert_eq!(after.len(), rays.len(), "one starting point for each ray");
+        hits.reset(rays.len());
+        let mut counts = Counts::default();
+        for chunk in chunks(rays.len()) {
+            let primitive = &mut hits.primitive[chunk.clone()];
+            let mut goal = Next { primitive, after: &after[chunk.clone()] };
+            counts += self.walk(rays, chunk.clone(), &mut goal, scratch);
+            scratch.rays.found(&hits.primitive[chunk.clone()], &mut hits.t[chunk]);
+        }
+        for (after, found) in after.iter_mut().zip(hits.t.iter().zip(&hits.primitive)) {
+            *after = (*found.0, *found.1);
+        }
+        self.refine(rays, hits);
+        counts
+    }
+
+    /// Whether anything lies within the range of each ray; `out` becomes as long as `rays`.
+    ///
+    /// With `opaque`, primitives outside that set do not block: a ray that touches only such is `Filtered`. Rays are
+    /// never reversed.
+    pub fn occluded(
+        &self,
+        rays: &RayBatch,
+        opaque: Option<&BitSet>,
+        out: &mut Vec<Occlusion>,
+        scratch: &mut Scratch,
+    ) -> Counts {
+        out.clear();
+        out.resize(rays.len(), Occlusion::Clear);
+        let mut counts = Counts::default();
+        for chunk in chunks(rays.len()) {
+            let occlusion = &mut out[chunk.clone()];
+            counts += self.walk(rays, chunk, &mut Any { occlusion, opaque }, scratch);
+        }
+        counts
+    }
+
+    /// Walk one chunk: planes first, since they lie outside the tree and shorten the rays, then the tree.
+    fn walk<G: Goal>(&self, rays: &RayBatch, chunk: Range<usize>, goal: &mut G, scratch: &mut Scratch) -> Counts {
+        let Scratch { rays: prepared, lists } = scratch;
+        prepared.fill(self.level, self.tree, self.primitives, rays, chunk);
+        let mut counts = walk::planes(self.primitives, prepared, goal);
+        counts += match self.tree.kind() {
+            TreeKind::None => brute_force::walk(self.tree, self.primitives, prepared, goal),
+            _ => {
+                let (tree, primitives) = (self.tree, self.primitives);
+                let kernel = walk::Walk { tree, primitives, kind: self.walk, rays: prepared, lists, goal };
+                simd::dispatch(self.level, kernel)
+            }
+        };
+        counts
+    }
+
+    /// Give every hit its t in double precision and its surface coordinates.
+    fn refine(&self, rays: &RayBatch, hits: &mut HitBatch) {
+        for index in 0..hits.len() {
+            let mut hit = hits.get(index);
+            if hit.is_hit() {
+                self.primitives.refine(&rays.get(index), &mut hit);
+                hits.set(index, hit);
+            }
+        }
+    }
+}
+
+/// Cut `0..len` into chunks.
+fn chunks(len: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..len).step_by(CHUNK).map(move |start| start..len.min(start + CHUNK))
+}

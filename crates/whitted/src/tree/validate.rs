@@ -1,0 +1,94 @@
+//! The tree checks itself.
+
+use super::leaf::LeafKind;
+use super::wide::{Child, ChildKind, Node, Tree, WIDTH};
+use crate::geometry::{Kind, Primitives};
+use crate::math::Aabb;
+
+/// Check every invariant of `tree` over `primitives`; the first violation is the error.
+pub(super) fn validate(tree: &Tree, primitives: &Primitives) -> Result<(), String> {
+    if tree.kind() == super::TreeKind::None {
+        return Ok(());
+    }
+    let mut covered = vec![Aabb::EMPTY; primitives.bounded_count()];
+    let mut visited = vec![false; tree.nodes.len()];
+    let mut pending = vec![(0, Aabb::EMPTY, 1)];
+    while let Some((index, outer, level)) = pending.pop() {
+        check_visit(tree, &mut visited, index, level)?;
+        let node = &tree.nodes[index];
+        check_orders(node, index)?;
+        for lane in 0..WIDTH {
+            let bounds = node.bounds(lane);
+            if bounds.is_empty() {
+                continue;
+            }
+            if !outer.is_empty() && !outer.contains(bounds) {
+                return Err(format!("node {index} lane {lane}: box {bounds:?} leaves its parent's {outer:?}"));
+            }
+            match node.child[lane].decode() {
+                ChildKind::Interior(child) => pending.push((child, bounds, level + 1)),
+                ChildKind::Leaf { kind, first, count } => {
+                    for id in tree.leaves.primitives(kind, first, count) {
+                        check_kind(primitives, id, kind)?;
+                        covered[id as usize] = covered[id as usize].union(bounds);
+                    }
+                }
+            }
+        }
+    }
+    if let Some(index) = visited.iter().position(|&v| !v) {
+        return Err(format!("node {index} is not reachable"));
+    }
+    check_cover(tree, primitives, &covered)
+}
+
+fn check_visit(tree: &Tree, visited: &mut [bool], index: usize, level: usize) -> Result<(), String> {
+    if index >= visited.len() || std::mem::replace(&mut visited[index], true) {
+        return Err(format!("node {index} of {} is missing or has two parents", tree.nodes.len()));
+    }
+    if level > tree.depth() {
+        return Err(format!("node {index} lies on level {level}, beyond the depth {}", tree.depth()));
+    }
+    Ok(())
+}
+
+fn check_orders(node: &Node, index: usize) -> Result<(), String> {
+    for order in &node.order {
+        let seen = order.iter().fold(0u32, |seen, &lane| seen | 1 << lane);
+        if seen != 0xffff {
+            return Err(format!("node {index}: {order:?} is not a permutation"));
+        }
+    }
+    let unused = |child: Child, lane: usize| node.bounds(lane).is_empty() && child.0 != u32::MAX;
+    if let Some(lane) = (0..WIDTH).find(|&lane| unused(node.child[lane], lane)) {
+        return Err(format!("node {index} lane {lane}: a child in an empty box"));
+    }
+    Ok(())
+}
+
+fn check_kind(primitives: &Primitives, id: u32, kind: LeafKind) -> Result<(), String> {
+    let right = matches!(
+        (primitives.kind(id), kind),
+        (Kind::Triangle(_), LeafKind::Triangles)
+            | (Kind::Sphere(_), LeafKind::Spheres)
+            | (Kind::Shape(_), LeafKind::Shapes)
+    );
+    if right { Ok(()) } else { Err(format!("primitive {id} lies in a leaf of {kind:?}")) }
+}
+
+/// Every sound primitive must be inside the union of the boxes of its leaves; cut ones are covered piecewise.
+fn check_cover(tree: &Tree, primitives: &Primitives, covered: &[Aabb]) -> Result<(), String> {
+    for (id, covered) in covered.iter().enumerate() {
+        let Some(bounds) = primitives.primitive_bounds(id as u32) else {
+            if !covered.is_empty() {
+                return Err(format!("degenerate primitive {id} is in the tree"));
+            }
+            continue;
+        };
+        let scaled = Aabb::new(bounds.lo * tree.scale(), bounds.hi * tree.scale());
+        if !covered.contains(scaled) {
+            return Err(format!("primitive {id}: {scaled:?} is not covered by {covered:?}"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,133 @@
+//! Walks: ways to find the leaves that rays meet.
+//!
+//! All are generic over the instruction set and over the [`Goal`], and all offer the same candidates.
+
+mod prepared;
+mod single;
+mod stream;
+
+pub(super) use prepared::PreparedRays;
+pub(super) use stream::Lists;
+
+use super::goal::Goal;
+use super::leaf::LeafKind;
+use super::query::Counts;
+use super::{Tree, WalkKind};
+use crate::geometry::{Crossings, Primitives, Shape};
+use crate::ray::Ray;
+use simd::{Kernel, Simd};
+
+/// One chunk of rays on its way through a tree: the kernel that is dispatched.
+pub(super) struct Walk<'a, G> {
+    pub tree: &'a Tree,
+    pub primitives: &'a Primitives,
+    pub kind: WalkKind,
+    pub rays: &'a mut PreparedRays,
+    pub lists: &'a mut Lists,
+    pub goal: &'a mut G,
+}
+
+impl<G: Goal> Kernel for Walk<'_, G> {
+    type Output = Counts;
+
+    #[inline(always)]
+    fn run<S: Simd>(mut self, token: S) -> Counts {
+        let mut counts = Counts::default();
+        match self.kind {
+            WalkKind::Auto | WalkKind::Stream if self.rays.any_slack() => {
+                stream::walk::<S, G, true>(token, &mut self, &mut counts);
+            }
+            WalkKind::Auto | WalkKind::Stream => stream::walk::<S, G, false>(token, &mut self, &mut counts),
+            WalkKind::Single => {
+                let mut stack = std::mem::take(&mut self.lists.stack);
+                for index in 0..self.rays.len() {
+                    single::walk(token, &mut self, &mut stack, index, super::wide::Child::interior(0), &mut counts);
+                }
+                self.lists.stack = stack;
+            }
+        }
+        counts
+    }
+}
+
+impl<G: Goal> Walk<'_, G> {
+    /// Test one ray against the blocks of a leaf.
+    #[inline(always)]
+    fn leaf<S: Simd>(
+        &mut self,
+        token: S,
+        index: usize,
+        kind: LeafKind,
+        first: usize,
+        count: usize,
+        counts: &mut Counts,
+    ) {
+        counts.primitive_tests += (count * super::leaf::BLOCK) as u64;
+        let (t_min, mut limit) = (self.rays.t_min(index), self.rays.limit(index));
+        let blocks = first..first + count;
+        match kind {
+            LeafKind::Triangles => {
+                let ray = self.rays.sheared(index);
+                for block in &self.tree.leaves.triangles[blocks] {
+                    block.intersect(token, self.goal, index, &ray, t_min, &mut limit);
+                }
+            }
+            LeafKind::Spheres => {
+                let ray = self.rays.sphere(index);
+                for block in &self.tree.leaves.spheres[blocks] {
+                    block.intersect(token, self.goal, index, &ray, t_min, &mut limit);
+                }
+            }
+            LeafKind::Shapes => shapes(self, index, blocks, &mut limit),
+        }
+        self.rays.set_limit(index, limit);
+    }
+}
+
+/// Test one ray against the primitives of shape blocks, one by one.
+#[inline(never)]
+fn shapes<G: Goal>(walk: &mut Walk<'_, G>, index: usize, blocks: std::ops::Range<usize>, limit: &mut f32) {
+    let ray = walk.rays.ray(index);
+    for id in walk.tree.leaves.shapes[blocks].iter().flat_map(|block| block.ids()) {
+        let shape = &walk.primitives.shapes()[(id - walk.primitives.first_shape()) as usize];
+        if let Some(t) = first_crossing(shape, &ray, walk.rays.t_min(index), *limit)
+            && let Some(shorter) = walk.goal.offer(index, t, id, *limit)
+        {
+            *limit = shorter;
+        }
+    }
+}
+
+/// The first crossing of a shape, rounded to `f32`, with `t_min ≤ t ≤ t_max`.
+pub(super) fn first_crossing(shape: &Shape, ray: &Ray, t_min: f32, t_max: f32) -> Option<f32> {
+    first_in_range(shape.crossings(ray.origin.to_f64(), ray.direction.to_f64()), t_min, t_max)
+}
+
+fn first_in_range(crossings: Crossings, t_min: f32, t_max: f32) -> Option<f32> {
+    crossings.as_slice().iter().map(|&t| t as f32).find(|&t| t_min <= t).filter(|&t| t <= t_max)
+}
+
+/// Offer the unbounded planes, which are in no tree.
+pub(super) fn planes<G: Goal>(primitives: &Primitives, rays: &mut PreparedRays, goal: &mut G) -> Counts {
+    let mut counts = Counts::default();
+    if primitives.planes().is_empty() {
+        return counts;
+    }
+    for index in 0..rays.len() {
+        let ray = rays.ray(index);
+        for (id, plane) in (primitives.first_plane()..).zip(primitives.planes()) {
+            let limit = rays.limit(index);
+            if limit < rays.t_min(index) {
+                break;
+            }
+            counts.primitive_tests += 1;
+            let crossings = plane.crossings(ray.origin.to_f64(), ray.direction.to_f64());
+            if let Some(t) = first_in_range(crossings, rays.t_min(index), limit)
+                && let Some(shorter) = goal.offer(index, t, id, limit)
+            {
+                rays.set_limit(index, shorter);
+            }
+        }
+    }
+    counts
+}

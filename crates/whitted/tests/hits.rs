@@ -1,0 +1,73 @@
+//! Every tree, walk and instruction set finds the hits of brute force, to the bit.
+
+mod common;
+
+use whitted::geometry::Primitives;
+use whitted::math::SplitMix64;
+use whitted::ray::{HitBatch, RayBatch};
+use whitted::tree::{Occlusion, Query, Scratch, Tree, TreeKind, WalkKind};
+
+/// Rays of one comparison in all; `WHITTED_RAYS` asks for more.
+fn rays_in_all() -> u64 {
+    std::env::var("WHITTED_RAYS").map_or(1_000_000, |n| n.parse().expect("WHITTED_RAYS is a whole number"))
+}
+
+fn bits(hits: &HitBatch) -> Vec<(u32, u32, u32, u32)> {
+    (0..hits.len())
+        .map(|i| (hits.t[i].to_bits(), hits.u[i].to_bits(), hits.v[i].to_bits(), hits.primitive[i]))
+        .collect()
+}
+
+/// Compare one scene; returns the number of hits.
+fn compare(primitives: &Primitives, rays: &RayBatch, seed: u64) -> usize {
+    let mut scratch = Scratch::default();
+    let none = Tree::build(primitives, &TreeKind::None.into());
+    let level = simd::Level::best();
+    let oracle = Query { tree: &none, primitives, level, walk: WalkKind::Auto };
+    let (mut expected, mut found) = (HitBatch::default(), HitBatch::default());
+    let (mut expected_any, mut any) = (Vec::new(), Vec::new());
+    oracle.closest_hit(rays, &mut expected, &mut scratch);
+    oracle.occluded(rays, None, &mut expected_any, &mut scratch);
+    for (ray, any) in expected.primitive.iter().zip(&expected_any) {
+        assert_eq!(*ray != u32::MAX, *any == Occlusion::Blocked, "scene {seed}: any hit = closest hit");
+    }
+    for kind in [TreeKind::Kd, TreeKind::Fast, TreeKind::Best] {
+        let tree = Tree::build(primitives, &kind.into());
+        tree.validate(primitives).unwrap_or_else(|error| panic!("scene {seed}, {kind:?}: {error}"));
+        for walk in [WalkKind::Stream, WalkKind::Single] {
+            for level in simd::Level::available() {
+                let query = Query { tree: &tree, primitives, level, walk };
+                query.closest_hit(rays, &mut found, &mut scratch);
+                if bits(&found) != bits(&expected) {
+                    let i = (0..rays.len()).find(|&i| found.get(i) != expected.get(i)).expect("a difference");
+                    panic!(
+                        "scene {seed}, {kind:?}, {walk:?}, {level:?}, ray {i} {:?}: {:?}, brute force {:?}",
+                        rays.get(i),
+                        found.get(i),
+                        expected.get(i)
+                    );
+                }
+                query.occluded(rays, None, &mut any, &mut scratch);
+                assert_eq!(any, expected_any, "scene {seed}, {kind:?}, {walk:?}, {level:?}");
+            }
+        }
+    }
+    (0..rays.len()).filter(|&i| expected.get(i).is_hit()).count()
+}
+
+#[test]
+fn every_walk_finds_the_hits_of_brute_force() {
+    let per_scene = 1000;
+    let mut hits = 0;
+    let scenes = rays_in_all() / per_scene / 24 + 1;
+    for seed in 0..scenes {
+        let mut rng = SplitMix64::new(seed);
+        let count = 1 + rng.below(if seed % 4 == 0 { 256 } else { 40 });
+        let primitives = common::scene(&mut rng, count);
+        let rays: Vec<_> = (0..per_scene).map(|_| common::ray(&mut rng, &primitives)).collect();
+        hits += compare(&primitives, &rays.iter().collect(), seed);
+    }
+    let rays = scenes * per_scene;
+    println!("{scenes} scenes, {rays} rays, {hits} hits, each by 3 trees, 2 walks, every instruction set");
+    assert!(hits as u64 > rays / 10, "the rays should hit something: {hits} of {rays}");
+}
