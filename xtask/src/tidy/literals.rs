@@ -18,11 +18,18 @@ pub(super) fn check(source: &Source) -> Vec<Complaint> {
         .into_iter()
         .filter(|range| !source.is_test(range.start) && !constants.iter().any(|item| item.contains(&range.start)))
         .filter(|range| !PLAIN.contains(&value(&source.masked[range.clone()])))
+        .filter(|range| !is_field(&source.masked, range.start))
         .map(|range| {
             let text = &source.masked[range.clone()];
             source.complaint(range.start, format!("`{text}` has no name: make it a `const` that says unit and source"))
         })
         .collect()
+}
+
+/// Whether the literal is the value of a field, as in `BuildOptions { traversal_cost: 1.2 }`: the field is its name.
+fn is_field(masked: &str, at: usize) -> bool {
+    let before = masked[..at].trim_end();
+    before.ends_with(':') && !before.ends_with("::")
 }
 
 /// The literal without its type suffix.
@@ -118,7 +125,7 @@ mod tests {
 
     #[test]
     fn unnamed_floats_are_found() {
-        let text = "fn f() { a(1.5, 1e-4, 3f32, 2.0, 1.0_f32, 7, 0..3, x.0, 1.max(2), 0x1e3, 12_u32, 4.); }";
+        let text = "fn f() { a(1.5, 1e-4, 3f32, 2.0, 1.0_f32, 7, 0..3, x.0, 1.max(2), 0x1e3, 12_u32, 4., S { cost: 5.5 }); }";
         assert_eq!(offenders(text), ["1.5", "1e-4", "3f32", "4."]);
     }
 
