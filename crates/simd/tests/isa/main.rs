@@ -6,3 +6,4 @@ mod common;
 mod fma;
 mod lanes;
 mod lists;
+mod math;
