@@ -183,18 +183,24 @@ impl Line {
     /// Where the line is inside the half of the double cone that can have a positive radius between the ends; the
     /// interval may reach into the other half, which lies beyond the ends.
     fn inside_cone(&self) -> Option<(f64, f64)> {
-        if self.a >= 0.0 {
-            let [t0, t1] = self.roots()?;
-            // Parallel to a cylinder's side: inside everywhere or nowhere.
-            let always = t0.is_nan() && self.c <= 0.0;
-            return if always { Some((f64::NEG_INFINITY, f64::INFINITY)) } else { Some((t0.min(t1), t0.max(t1))) };
+        if self.a < 0.0 {
+            return Some(self.inside_one_half());
         }
-        // Steeper than the side: one root on each half. The line passes the apex plane outside, so real roots exist
-        // and a negative discriminant is rounding.
+        let [t0, t1] = self.roots()?;
+        if t0.is_nan() {
+            // Parallel to a cylinder's side: inside everywhere or nowhere.
+            return (self.c <= 0.0).then_some((f64::NEG_INFINITY, f64::INFINITY));
+        }
+        Some((t0.min(t1), t0.max(t1)))
+    }
+
+    /// Where a line that is steeper than the side is inside: one root on each half, to infinity beyond it. Between them
+    /// the line passes the tip's plane outside, so real roots exist and a negative discriminant is rounding.
+    fn inside_one_half(&self) -> (f64, f64) {
         let [t0, t1] = self.roots_with(self.discriminant.max(0.0));
         match self.widening > 0.0 {
-            true => Some((t0.max(t1), f64::INFINITY)),
-            false => Some((f64::NEG_INFINITY, t0.min(t1))),
+            true => (t0.max(t1), f64::INFINITY),
+            false => (f64::NEG_INFINITY, t0.min(t1)),
         }
     }
 }

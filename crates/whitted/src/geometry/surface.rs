@@ -34,8 +34,8 @@ impl ShapePoint {
     ///
     /// Shapes are intersected in `f64`, so what can be mistaken is the start of the ray: `position` lies within
     /// √3/2 ulp of its largest coordinate from the surface and the offset point is rounded once more, together below
-    /// 4 · 2⁻²⁴ of that coordinate. 2⁻⁴⁰ of the extent covers the arithmetic (2⁻⁵⁰, measured by the tests of shapes)
-    /// and keeps the bound above zero at the origin.
+    /// 4 · 2⁻²⁴ of that coordinate. 2⁻⁴⁰ of the extent covers the arithmetic of `f64` thousands of times over and keeps
+    /// the bound above zero at the origin.
     pub fn rounded(&self, extent: f64) -> SurfacePoint {
         const ROUNDING: f64 = 4.0 / (1u64 << 24) as f64;
         const ARITHMETIC: f64 = 1.0 / (1u64 << 40) as f64;
