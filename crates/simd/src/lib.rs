@@ -15,6 +15,8 @@
 //!   dispatched function is slow, never wrong.
 //! * This crate knows nothing about rays.
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods, clippy::print_stdout, clippy::print_stderr))]
+
 mod array;
 mod dispatch;
 mod lanes;
