@@ -110,6 +110,7 @@ impl<'a> Context<'a> {
     }
 
     /// Read `path`, called `shown` in messages.
+    #[expect(clippy::disallowed_methods, reason = "the one place where files are opened")]
     fn read(&mut self, path: &Path, shown: &Path) -> Result<Vec<u8>, Error> {
         let metadata = path.metadata().map_err(|e| Error::io(shown, "open the file", &e))?;
         if !metadata.is_file() {

@@ -14,6 +14,7 @@
 //! * No `unsafe`; nothing is printed; no rendering.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods, clippy::print_stdout, clippy::print_stderr))]
 
 mod check;
 mod error;
