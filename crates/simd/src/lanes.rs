@@ -9,23 +9,14 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 /// the width that the data has (nodes of 16 children, leaf blocks of 8) and the token maps it to registers.
 pub trait Simd: Copy + Send + Sync + Debug + 'static {
     /// Four floats.
-    type F32x4: F32Lanes<Token = Self, Array = [f32; 4]>;
+    type F32x4: F32Lanes<Token = Self, Array = [f32; 4], U32: U32Lanes<Array = [u32; 4]>>;
     /// Eight floats.
-    type F32x8: F32Lanes<Token = Self, Array = [f32; 8]>;
+    type F32x8: F32Lanes<Token = Self, Array = [f32; 8], U32: U32Lanes<Array = [u32; 8]>>;
     /// Sixteen floats.
-    type F32x16: F32Lanes<Token = Self, Array = [f32; 16]>;
+    type F32x16: F32Lanes<Token = Self, Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>;
 
     /// Short lower-case name as used by `--simd`: `scalar`, `sse4.2`, `avx2`, `avx512`.
     const NAME: &'static str;
-
-    /// `(x, y, z, w)` to `(y, z, x, w)`, the turn that a cross product is made of.
-    #[inline(always)]
-    fn yzx(self, v: Self::F32x4) -> Self::F32x4 {
-        let mut lanes = [0.0; 4];
-        v.store(&mut lanes);
-        let [x, y, z, w] = lanes;
-        Self::F32x4::load(self, &[y, z, x, w])
-    }
 
     /// Append `ids[i]` to the front of `out` for every `i` with `masks[i] & bit != 0`, in order; return how many.
     ///
@@ -162,8 +153,6 @@ pub trait F32Lanes:
     /// Lanes of a two's complement integer, rounded to nearest even.
     fn from_int(value: Self::U32) -> Self;
 
-    /// The sum of the lanes, by adding the upper half to the lower until one is left.
-    fn reduce_add(self) -> f32;
     /// The smallest lane, by [`min`](Self::min) of the lower half with the upper until one is left (which settles
     /// the sign of a zero and what a NaN does).
     fn reduce_min(self) -> f32;

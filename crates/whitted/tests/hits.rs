@@ -55,6 +55,42 @@ fn compare(primitives: &Primitives, rays: &RayBatch, seed: u64) -> usize {
     (0..rays.len()).filter(|&i| expected.get(i).is_hit()).count()
 }
 
+/// All hits of a ray in order, by asking for the next one again and again.
+fn all_hits(query: &Query<'_>, rays: &RayBatch) -> Vec<Vec<(u32, u32)>> {
+    let mut after = vec![(f32::NEG_INFINITY, 0); rays.len()];
+    let mut lists = vec![Vec::new(); rays.len()];
+    let (mut hits, mut scratch) = (HitBatch::default(), Scratch::default());
+    loop {
+        query.next_hit(rays, &mut after, &mut hits, &mut scratch);
+        for (list, after) in lists.iter_mut().zip(&after).filter(|(_, after)| after.0 < f32::INFINITY) {
+            list.push((after.0.to_bits(), after.1));
+        }
+        if after.iter().all(|after| after.0 == f32::INFINITY) {
+            return lists;
+        }
+    }
+}
+
+#[test]
+fn all_hits_come_once_and_in_order() {
+    for seed in 0..20 {
+        let mut rng = SplitMix64::new(1000 + seed);
+        let primitives = common::scene(&mut rng, 60);
+        let rays: RayBatch = (0..200).map(|_| common::ray(&mut rng, &primitives)).collect::<Vec<_>>().iter().collect();
+        let trees = [TreeKind::None, TreeKind::Kd, TreeKind::Best].map(|kind| Tree::build(&primitives, &kind.into()));
+        let query = |tree, walk| Query { tree, primitives: &primitives, level: simd::Level::best(), walk };
+        let expected = all_hits(&query(&trees[0], WalkKind::Auto), &rays);
+        let key = |&(t, id): &(u32, u32)| (f32::from_bits(t), id);
+        assert!(expected.iter().all(|list| list.windows(2).all(|w| key(&w[0]) < key(&w[1]))), "scene {seed}: order");
+        assert!(expected.iter().map(Vec::len).max() > Some(3), "scene {seed}: rays should hit more than once");
+        for (tree, walk) in
+            [(&trees[1], WalkKind::Stream), (&trees[2], WalkKind::Stream), (&trees[2], WalkKind::Single)]
+        {
+            assert_eq!(all_hits(&query(tree, walk), &rays), expected, "scene {seed}, {:?}, {walk:?}", tree.kind());
+        }
+    }
+}
+
 #[test]
 fn every_walk_finds_the_hits_of_brute_force() {
     let per_scene = 1000;

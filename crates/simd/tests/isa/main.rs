@@ -7,4 +7,3 @@ mod fma;
 mod lanes;
 mod lists;
 mod math;
-mod vec4;

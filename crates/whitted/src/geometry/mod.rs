@@ -27,3 +27,12 @@ pub use shape::{Crossings, Shape};
 pub use sphere::Sphere;
 pub use surface::{ShapePoint, SurfacePoint};
 pub use triangle::{ShearedRay, Triangle};
+
+/// Three scalars as lanes.
+///
+/// Kernels pass lanes through functions like this one and never through closures: a closure cannot be forced to be
+/// inlined, and lane operations that are left outside the dispatched function cost ten times as much.
+#[inline(always)]
+pub(crate) fn splat<F: simd::F32Lanes>(token: F::Token, [x, y, z]: [f32; 3]) -> [F; 3] {
+    [F::splat(token, x), F::splat(token, y), F::splat(token, z)]
+}

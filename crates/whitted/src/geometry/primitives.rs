@@ -1,6 +1,6 @@
 //! All primitives of a scene in one number space.
 
-use super::triangle::ERROR_ULPS;
+use super::triangle::{ERROR_ULPS, Refined};
 use super::{Plane, Shape, Sphere, SurfacePoint, Triangle};
 use crate::math::{Aabb, Vec3f};
 use crate::ray::{Hit, Ray};
@@ -148,19 +148,17 @@ impl Primitives {
     /// If there is no such primitive.
     #[inline]
     pub fn kind(&self, id: u32) -> Kind {
-        let mut index = id as usize;
-        for (count, kind) in [
-            (self.triangles.len(), Kind::Triangle as fn(usize) -> Kind),
-            (self.spheres.len(), Kind::Sphere),
-            (self.shapes.len(), Kind::Shape),
-            (self.planes.len(), Kind::Plane),
-        ] {
-            if index < count {
-                return kind(index);
-            }
-            index -= count;
+        if id < self.first_sphere() {
+            Kind::Triangle(id as usize)
+        } else if id < self.first_shape() {
+            Kind::Sphere((id - self.first_sphere()) as usize)
+        } else if id < self.first_plane() {
+            Kind::Shape((id - self.first_shape()) as usize)
+        } else {
+            let index = (id - self.first_plane()) as usize;
+            assert!(index < self.planes.len(), "primitive {id} of {}", self.len());
+            Kind::Plane(index)
         }
-        panic!("primitive {id} of {}", self.len());
     }
 
     /// Number of the first sphere.
@@ -222,16 +220,13 @@ impl Primitives {
         (0..self.bounded_count() as u32).filter_map(|id| self.primitive_bounds(id)).fold(Aabb::EMPTY, Aabb::union)
     }
 
-    /// Replace the t of a fresh hit by its value in double precision and fill in the surface coordinates.
-    #[inline]
-    pub(crate) fn refine(&self, ray: &Ray, hit: &mut Hit) {
-        match self.kind(hit.primitive) {
-            Kind::Triangle(i) => {
-                let refined = self.triangle(i).refine(ray, hit.t);
-                (hit.t, hit.u, hit.v) = (refined.t, refined.u, refined.v);
-            }
-            Kind::Sphere(i) => hit.t = self.spheres[i].refine(ray, hit.t),
-            Kind::Shape(_) | Kind::Plane(_) => {}
+    /// The parameter and the surface coordinates of a fresh hit at `t`, by double precision.
+    #[inline(always)]
+    pub(crate) fn refine(&self, ray: &Ray, t: f32, primitive: u32) -> Refined {
+        match self.kind(primitive) {
+            Kind::Triangle(i) => self.triangle(i).refine(ray, t),
+            Kind::Sphere(i) => Refined { t: self.spheres[i].refine(ray, t), u: 0.0, v: 0.0 },
+            Kind::Shape(_) | Kind::Plane(_) => Refined { t, u: 0.0, v: 0.0 },
         }
     }
 

@@ -5,6 +5,7 @@
 //! cancellation, however far away the ray starts. From inside, the far root is the hit. The paper (§2.2.2) calls an
 //! origin inside "terminate", which would make refraction impossible, and prints its equation with sign errors.
 
+use super::splat;
 use crate::math::{Vec3, Vec3f};
 use crate::ray::Ray;
 use simd::F32Lanes;
@@ -32,8 +33,13 @@ pub(crate) struct SphereRay {
 }
 
 impl SphereRay {
-    /// Prepare a ray.
+    /// A ray that was prepared elsewhere by the same formulas.
     #[inline(always)]
+    pub(crate) fn from_parts(origin: [f32; 3], direction: [f32; 3], inverse_length_squared: f32) -> Self {
+        Self { origin, direction, inverse_length_squared, padding: 0.0 }
+    }
+
+    /// Prepare a ray.
     pub(crate) fn new(origin: Vec3f, direction: Vec3f) -> Self {
         Self {
             origin: origin.to_array(),
@@ -44,29 +50,27 @@ impl SphereRay {
     }
 }
 
-/// Intersect one ray with as many spheres as there are lanes; return the hit lanes' mask and t.
+/// Intersect one line with as many spheres as there are lanes; return the parameters where it enters and leaves.
 ///
-/// Lanes hit where `t_min ≤ t ≤ t_max` for the near root, or for the far root if the near one lies before `t_min`. NaN
-/// anywhere is a miss.
+/// Both are NaN where the line passes by, or anything is NaN.
 #[inline(always)]
-pub(crate) fn intersect<F: F32Lanes>(
-    token: F::Token,
-    ray: &SphereRay,
-    center: [F; 3],
-    radius_squared: F,
-    t_min: F,
-    t_max: F,
-) -> (F::Mask, F) {
-    let splat = |value| F::splat(token, value);
-    let direction = Vec3::from(ray.direction.map(splat));
-    let inverse = splat(ray.inverse_length_squared);
-    let from_center = Vec3::from(ray.origin.map(splat)) - Vec3::from(center);
+pub(crate) fn roots<F: F32Lanes>(token: F::Token, ray: &SphereRay, center: [F; 3], radius_squared: F) -> (F, F) {
+    let direction = Vec3::from(splat(token, ray.direction));
+    let inverse = F::splat(token, ray.inverse_length_squared);
+    let from_center = Vec3::from(splat(token, ray.origin)) - Vec3::from(center);
     // Walk to the point of the line that is nearest to the centre.
     let middle = -(from_center.dot(direction)) * inverse;
     let nearest = from_center + direction * middle;
-    // A line that passes by gives the root of a negative number, a NaN, and fails the comparisons.
+    // A line that passes by gives the root of a negative number.
     let half_chord = ((radius_squared - nearest.dot(nearest)) * inverse).sqrt();
-    let (near, far) = (middle - half_chord, middle + half_chord);
+    (middle - half_chord, middle + half_chord)
+}
+
+/// The first of two roots within a range: a mask of the lanes that have one, and which.
+///
+/// That is the near root, or the far one if the near one lies before `t_min`.
+#[inline(always)]
+pub(crate) fn first_in_range<F: F32Lanes>((near, far): (F, F), t_min: F, t_max: F) -> (F::Mask, F) {
     let t = F::select(t_min.le(near), near, far);
     (t_min.le(t) & t.le(t_max), t)
 }

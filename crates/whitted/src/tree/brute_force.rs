@@ -6,64 +6,88 @@ use super::walk::PreparedRays;
 use super::{Tree, walk};
 use crate::geometry::sphere::{self, SphereRay};
 use crate::geometry::triangle::{self, renamed};
-use crate::geometry::{Kind, Primitives, ShearedRay};
-use simd::{F32Lanes, MaskLanes, Scalar, ScalarF32};
+use crate::geometry::{Crossings, Kind, Primitives, ShearedRay};
+use crate::ray::{Ray, RayBatch};
+use simd::{F32Lanes, Scalar, ScalarF32};
 
 type One = ScalarF32<1>;
 
-/// Offer every hit of every ray.
-pub(super) fn walk<G: Goal>(tree: &Tree, primitives: &Primitives, rays: &mut PreparedRays, goal: &mut G) -> Counts {
+/// Offer every hit of every ray: those of `batch` from `first` on, whose ranges are kept in `ranges`.
+///
+/// Rays are prepared here anew, one by one, so that the vector code which prepares them for the walks is tested too.
+pub(super) fn walk<G: Goal>(
+    tree: &Tree,
+    primitives: &Primitives,
+    batch: &RayBatch,
+    first: usize,
+    ranges: &mut PreparedRays,
+    goal: &mut G,
+) -> Counts {
     let mut counts = Counts::default();
     let bounded = 0..primitives.bounded_count() as u32;
     let sound: Vec<u32> = bounded.filter(|&id| primitives.primitive_bounds(id).is_some()).collect();
-    for index in 0..rays.len() {
-        let (sheared, sphere_ray) = (rays.sheared(index), rays.sphere(index));
+    for index in 0..ranges.len() {
+        let ray = batch.get(first + index);
+        let one = OneRay {
+            sheared: ShearedRay::new(ray.origin * tree.scale(), ray.direction * tree.scale()),
+            sphere: SphereRay::new(ray.origin * tree.scale(), ray.direction * tree.scale()),
+            ray,
+            scale: tree.scale(),
+        };
         for &id in &sound {
-            if rays.limit(index) < rays.t_min(index) {
+            let mut limit = ranges.limit(index);
+            if limit < ray.t_min {
                 break;
             }
             counts.primitive_tests += 1;
-            let (t_min, limit) = (rays.t_min(index), rays.limit(index));
-            let t = intersect(tree.scale(), primitives, id, &sheared, &sphere_ray, t_min, limit, rays, index);
-            if let Some(t) = t
-                && let Some(shorter) = goal.offer(index, t, id, limit)
-            {
-                rays.set_limit(index, shorter);
-            }
+            one.offer(primitives, id, goal, index, &mut limit);
+            ranges.set_limit(index, limit);
         }
     }
     counts
 }
 
-/// The parameter at which one prepared ray meets one primitive within `t_min ≤ t ≤ t_max`.
-fn intersect(
+/// A ray in every form.
+struct OneRay {
+    ray: Ray,
+    sheared: ShearedRay,
+    sphere: SphereRay,
     scale: f32,
-    primitives: &Primitives,
-    id: u32,
-    sheared: &ShearedRay,
-    sphere_ray: &SphereRay,
-    t_min: f32,
-    t_max: f32,
-    rays: &PreparedRays,
-    index: usize,
-) -> Option<f32> {
-    let lane = |value: f32| One::splat(Scalar, value);
-    let (hit, t) = match primitives.kind(id) {
-        Kind::Triangle(i) => {
-            let axes = renamed(sheared.axis as usize);
-            let vertices = primitives.triangle(i).vertices.map(|p| axes.map(|axis| lane(p[axis] * scale)));
-            triangle::intersect(Scalar, sheared, vertices, lane(t_min), lane(t_max))
-        }
-        Kind::Sphere(i) => {
-            let sphere = primitives.spheres()[i];
-            let center = sphere.center.to_array().map(|c| lane(c * scale));
-            let radius = lane(sphere.radius * scale);
-            sphere::intersect(Scalar, sphere_ray, center, radius * radius, lane(t_min), lane(t_max))
-        }
-        Kind::Shape(i) => return walk::first_crossing(&primitives.shapes()[i], &rays.ray(index), t_min, t_max),
-        Kind::Plane(_) => unreachable!("planes are not bounded"),
-    };
-    let mut stored = [0.0];
-    t.store(&mut stored);
-    hit.any().then_some(stored[0])
+}
+
+impl OneRay {
+    /// Offer the crossings with one primitive.
+    fn offer<G: Goal>(&self, primitives: &Primitives, id: u32, goal: &mut G, index: usize, limit: &mut f32) {
+        let lane = |value: f32| One::splat(Scalar, value);
+        let (t_min, t_max) = (lane(self.ray.t_min), lane(*limit));
+        let crossings = match primitives.kind(id) {
+            Kind::Triangle(i) => {
+                let axes = renamed(self.sheared.axis as usize);
+                let vertices = primitives.triangle(i).vertices.map(|p| axes.map(|axis| lane(p[axis] * self.scale)));
+                let (hit, t) = triangle::intersect(Scalar, &self.sheared, vertices, t_min, t_max);
+                crossings(&[One::select(hit, t, lane(f32::NAN))])
+            }
+            Kind::Sphere(i) => {
+                let sphere = primitives.spheres()[i];
+                let center = sphere.center.to_array().map(|c| lane(c * self.scale));
+                let radius = lane(sphere.radius * self.scale);
+                let (near, far) = sphere::roots(Scalar, &self.sphere, center, radius * radius);
+                crossings(&[near, far])
+            }
+            Kind::Shape(i) => primitives.shapes()[i].crossings(self.ray.origin.to_f64(), self.ray.direction.to_f64()),
+            Kind::Plane(_) => unreachable!("planes are not bounded"),
+        };
+        walk::offer_crossings(goal, index, id, crossings, self.ray.t_min, limit);
+    }
+}
+
+/// The parameters as crossings; NaN is none.
+fn crossings(parameters: &[One]) -> Crossings {
+    let mut crossings = Crossings::NONE;
+    for parameter in parameters {
+        let mut t = [0.0];
+        parameter.store(&mut t);
+        crossings.insert(f64::from(t[0]));
+    }
+    crossings
 }

@@ -5,6 +5,9 @@ use crate::ray::NONE;
 
 /// Receives every candidate that a walk finds and says how far the ray still has to be followed.
 pub(crate) trait Goal {
+    /// True if every crossing of a surface must be offered, false if the first one in the ray's range will do.
+    const EVERY_CROSSING: bool = false;
+
     /// A primitive is hit at `t`, within the ray's range, `limit` being its upper end so far. Returns the new limit if
     /// the range shrinks; negative infinity ends the ray.
     fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32>;
@@ -36,6 +39,8 @@ pub(crate) struct Next<'a> {
 }
 
 impl Goal for Next<'_> {
+    const EVERY_CROSSING: bool = true;
+
     #[inline(always)]
     fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32> {
         let (after_t, after_primitive) = self.after[ray];

@@ -107,6 +107,12 @@ impl TriangleBlock {
         Self { rows, primitive: padded_ids(ids) }
     }
 
+    #[inline(always)]
+    fn vertex<S: Simd>(&self, token: S, vertex: usize, [x, y, z]: [usize; 3]) -> [S::F32x8; 3] {
+        let rows = &self.rows[3 * vertex..3 * vertex + 3];
+        [S::F32x8::load(token, &rows[x]), S::F32x8::load(token, &rows[y]), S::F32x8::load(token, &rows[z])]
+    }
+
     /// Offer the triangles that `ray` hits.
     #[inline(always)]
     pub(super) fn intersect<S: Simd, G: Goal>(
@@ -118,9 +124,8 @@ impl TriangleBlock {
         t_min: f32,
         limit: &mut f32,
     ) {
-        let row = |vertex: usize, axis: usize| S::F32x8::load(token, &self.rows[3 * vertex + axis]);
-        let [x, y, z] = renamed((ray.axis % 3) as usize);
-        let vertices = [0, 1, 2].map(|vertex| [row(vertex, x), row(vertex, y), row(vertex, z)]);
+        let axes = renamed((ray.axis % 3) as usize);
+        let vertices = [self.vertex(token, 0, axes), self.vertex(token, 1, axes), self.vertex(token, 2, axes)];
         let (t_min, t_max) = (S::F32x8::splat(token, t_min), S::F32x8::splat(token, *limit));
         let (hit, t) = triangle::intersect(token, ray, vertices, t_min, t_max);
         offer_lanes(goal, index, hit.bits(), t, &self.primitive, limit);
@@ -153,11 +158,18 @@ impl SphereBlock {
         t_min: f32,
         limit: &mut f32,
     ) {
-        let load = |row| S::F32x8::load(token, row);
-        let center = [load(&self.center[0]), load(&self.center[1]), load(&self.center[2])];
+        let [x, y, z] = &self.center;
+        let center = [S::F32x8::load(token, x), S::F32x8::load(token, y), S::F32x8::load(token, z)];
+        let radius_squared = S::F32x8::load(token, &self.radius_squared);
         let (t_min, t_max) = (S::F32x8::splat(token, t_min), S::F32x8::splat(token, *limit));
-        let (hit, t) = sphere::intersect(token, ray, center, load(&self.radius_squared), t_min, t_max);
+        let roots = sphere::roots(token, ray, center, radius_squared);
+        let (hit, t) = sphere::first_in_range(roots, t_min, t_max);
         offer_lanes(goal, index, hit.bits(), t, &self.primitive, limit);
+        if G::EVERY_CROSSING {
+            let far = roots.1;
+            let hit = t_min.le(far) & far.le(t_max);
+            offer_lanes(goal, index, hit.bits(), far, &self.primitive, limit);
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::goal::{Any, Closest, Goal, Next};
 use super::walk::{self, Lists, PreparedRays};
 use super::{BitSet, Occlusion, Tree, TreeKind, WalkKind, brute_force};
 use crate::geometry::Primitives;
-use crate::ray::{HitBatch, RayBatch};
+use crate::ray::{HitBatch, NONE, RayBatch};
 use simd::Level;
 use std::ops::{AddAssign, Range};
 
@@ -117,10 +117,11 @@ impl Query<'_> {
     /// Walk one chunk: planes first, since they lie outside the tree and shorten the rays, then the tree.
     fn walk<G: Goal>(&self, rays: &RayBatch, chunk: Range<usize>, goal: &mut G, scratch: &mut Scratch) -> Counts {
         let Scratch { rays: prepared, lists } = scratch;
+        let first = chunk.start;
         prepared.fill(self.level, self.tree, self.primitives, rays, chunk);
         let mut counts = walk::planes(self.primitives, prepared, goal);
         counts += match self.tree.kind() {
-            TreeKind::None => brute_force::walk(self.tree, self.primitives, prepared, goal),
+            TreeKind::None => brute_force::walk(self.tree, self.primitives, rays, first, prepared, goal),
             _ => {
                 let (tree, primitives) = (self.tree, self.primitives);
                 let kernel = walk::Walk { tree, primitives, kind: self.walk, rays: prepared, lists, goal };
@@ -132,11 +133,11 @@ impl Query<'_> {
 
     /// Give every hit its t in double precision and its surface coordinates.
     fn refine(&self, rays: &RayBatch, hits: &mut HitBatch) {
-        for index in 0..hits.len() {
-            let mut hit = hits.get(index);
-            if hit.is_hit() {
-                self.primitives.refine(&rays.get(index), &mut hit);
-                hits.set(index, hit);
+        let rows = hits.t.iter_mut().zip(&mut hits.u).zip(&mut hits.v).zip(&hits.primitive);
+        for (index, (((t, u), v), &primitive)) in rows.enumerate() {
+            if primitive != NONE {
+                let refined = self.primitives.refine(&rays.get(index), *t, primitive);
+                (*t, *u, *v) = (refined.t, refined.u, refined.v);
             }
         }
     }

@@ -25,7 +25,7 @@ pub(super) fn validate(tree: &Tree, primitives: &Primitives) -> Result<(), Strin
             if !outer.is_empty() && !outer.contains(bounds) {
                 return Err(format!("node {index} lane {lane}: box {bounds:?} leaves its parent's {outer:?}"));
             }
-            match node.child[lane].decode() {
+            match node.child(lane).decode() {
                 ChildKind::Interior(child) => pending.push((child, bounds, level + 1)),
                 ChildKind::Leaf { kind, first, count } => {
                     for id in tree.leaves.primitives(kind, first, count) {
@@ -60,7 +60,7 @@ fn check_orders(node: &Node, index: usize) -> Result<(), String> {
         }
     }
     let unused = |child: Child, lane: usize| node.bounds(lane).is_empty() && child.0 != u32::MAX;
-    if let Some(lane) = (0..WIDTH).find(|&lane| unused(node.child[lane], lane)) {
+    if let Some(lane) = (0..WIDTH).find(|&lane| unused(node.child(lane), lane)) {
         return Err(format!("node {index} lane {lane}: a child in an empty box"));
     }
     Ok(())

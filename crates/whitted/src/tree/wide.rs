@@ -5,6 +5,7 @@ use super::leaf::{LeafKind, Leaves};
 use super::{TreeKind, validate};
 use crate::geometry::Primitives;
 use crate::math::Aabb;
+use simd::F32Lanes;
 
 /// Children of a node.
 pub(super) const WIDTH: usize = 16;
@@ -30,7 +31,7 @@ pub(super) struct Node {
     /// no ray enters since reciprocals are neither 0 nor infinite.
     pub planes: [[f32; WIDTH]; 6],
     /// What the boxes hold.
-    pub child: [Child; WIDTH],
+    child: [u32; WIDTH],
     /// For each octant of ray directions (bit a set: component a negative) the lanes from far to near.
     pub order: [[u8; WIDTH]; 8],
 }
@@ -94,7 +95,7 @@ impl Node {
             [f32::NEG_INFINITY; WIDTH],
             [f32::NEG_INFINITY; WIDTH],
         ],
-        child: [Child::UNUSED; WIDTH],
+        child: [Child::UNUSED.0; WIDTH],
         order: [[0; WIDTH]; 8],
     };
 
@@ -103,7 +104,19 @@ impl Node {
             self.planes[axis][lane] = bounds.lo[axis];
             self.planes[3 + axis][lane] = bounds.hi[axis];
         }
-        self.child[lane] = child;
+        self.child[lane] = child.0;
+    }
+
+    /// The children as bits.
+    #[inline(always)]
+    pub(super) fn children(&self) -> &[u32; WIDTH] {
+        &self.child
+    }
+
+    /// What the box of a lane holds.
+    #[inline(always)]
+    pub(super) fn child(&self, lane: usize) -> Child {
+        Child(self.child[lane])
     }
 
     /// The box of a lane as stored, padding included.
@@ -205,9 +218,13 @@ impl Tree {
         self.scale
     }
 
-    /// How far outside its padded boxes a ray from `origin` (in the tree's coordinates) may find what they hold.
-    pub(super) fn slack(&self, origin_max: f32) -> f32 {
-        (ERROR * (origin_max + self.max_coordinate) - PADDING * self.max_coordinate).max(0.0)
+    /// How far outside its padded boxes a ray may find what they hold, if the largest coordinate of its origin is
+    /// `distance` (in the tree's coordinates).
+    #[inline(always)]
+    pub(super) fn slack<F: F32Lanes>(&self, token: F::Token, distance: F) -> F {
+        let splat_error = F::splat(token, ERROR);
+        let covered = F::splat(token, (PADDING - ERROR) * self.max_coordinate);
+        (splat_error * distance - covered).max(F::splat(token, 0.0))
     }
 
     /// Levels of nodes below and including the root: bounds every stack of a walk.

@@ -2,8 +2,8 @@
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use whitted::geometry::{Primitives, Sphere};
-use whitted::math::{SplitMix64, Vec3, Vec3f};
+use whitted::geometry::{Boxed, Cone, Cylinder, Disc, Plane, Primitives, Shape, Sphere};
+use whitted::math::{SplitMix64, Vec3, Vec3d, Vec3f};
 use whitted::ray::Ray;
 
 /// A point with coordinates in ±`size`, sometimes on a coarse lattice so that coordinates coincide.
@@ -21,9 +21,14 @@ pub(crate) fn scene(rng: &mut SplitMix64, count: u32) -> Primitives {
     let mut previous: Option<[Vec3f; 3]> = None;
     let mut vertices = Vec::new();
     let mut spheres: Vec<Sphere> = Vec::new();
+    let mut shapes = Vec::new();
     for _ in 0..count {
         let center = point(rng, 1.0);
         let size = [0.05, 0.2, 1.0, 3.0][rng.below(4) as usize];
+        if rng.below(6) == 0 {
+            shapes.push(shape(rng, center.to_f64(), size));
+            continue;
+        }
         if rng.below(3) == 0 {
             let odd = rng.below(8);
             let radius = match odd {
@@ -51,7 +56,27 @@ pub(crate) fn scene(rng: &mut SplitMix64, count: u32) -> Primitives {
     let triangles: Vec<[u32; 3]> = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     primitives.push_mesh(&vertices, &triangles, &[], &[]).expect("a sound mesh");
     spheres.into_iter().for_each(|sphere| primitives.push_sphere(sphere));
+    shapes.into_iter().for_each(|shape| primitives.push_shape(shape));
+    if rng.below(4) == 0 {
+        primitives.push_plane(Plane { point: point(rng, 2.0).to_f64(), normal: point(rng, 1.0).to_f64() });
+    }
     primitives
+}
+
+/// A disc, box, cylinder or cone near `center`; some are degenerate.
+fn shape(rng: &mut SplitMix64, center: Vec3d, size: f64) -> Shape {
+    let other = center + point(rng, size).to_f64();
+    let radius = if rng.below(8) == 0 { 0.0 } else { rng.uniform(0.01, size) };
+    let capped = rng.below(2) == 0;
+    match rng.below(4) {
+        0 => Shape::Disc(Disc { center, normal: other - center, radius, inner_radius: radius * rng.uniform(0.0, 0.9) }),
+        1 => Shape::Boxed(Boxed { lo: center.min(other), hi: center.max(other) }),
+        2 => Shape::Cylinder(Cylinder { base: center, apex: other, radius, capped }),
+        _ => {
+            let apex_radius = radius * rng.uniform(0.0, 1.0);
+            Shape::Cone(Cone { base: center, apex: other, base_radius: radius, apex_radius, capped })
+        }
+    }
 }
 
 /// A ray: random, along an axis, at a vertex, from far away, or with a range; a few are unsound.

@@ -4,6 +4,7 @@
 
 mod prepared;
 mod single;
+mod slabs;
 mod stream;
 
 pub(super) use prepared::PreparedRays;
@@ -13,8 +14,7 @@ use super::goal::Goal;
 use super::leaf::LeafKind;
 use super::query::Counts;
 use super::{Tree, WalkKind};
-use crate::geometry::{Crossings, Primitives, Shape};
-use crate::ray::Ray;
+use crate::geometry::{Crossings, Primitives};
 use simd::{Kernel, Simd};
 
 /// One chunk of rays on its way through a tree: the kernel that is dispatched.
@@ -90,21 +90,28 @@ fn shapes<G: Goal>(walk: &mut Walk<'_, G>, index: usize, blocks: std::ops::Range
     let ray = walk.rays.ray(index);
     for id in walk.tree.leaves.shapes[blocks].iter().flat_map(|block| block.ids()) {
         let shape = &walk.primitives.shapes()[(id - walk.primitives.first_shape()) as usize];
-        if let Some(t) = first_crossing(shape, &ray, walk.rays.t_min(index), *limit)
-            && let Some(shorter) = walk.goal.offer(index, t, id, *limit)
+        let crossings = shape.crossings(ray.origin.to_f64(), ray.direction.to_f64());
+        offer_crossings(walk.goal, index, id, crossings, ray.t_min, limit);
+    }
+}
+
+/// Offer crossings, rounded to `f32`, from `t_min` on: the first, or all if the goal wants every one.
+pub(super) fn offer_crossings<G: Goal>(
+    goal: &mut G,
+    index: usize,
+    id: u32,
+    crossings: Crossings,
+    t_min: f32,
+    limit: &mut f32,
+) {
+    let in_range = crossings.as_slice().iter().map(|&t| t as f32).filter(|&t| t_min <= t);
+    for t in in_range.take(if G::EVERY_CROSSING { usize::MAX } else { 1 }) {
+        if t <= *limit
+            && let Some(shorter) = goal.offer(index, t, id, *limit)
         {
             *limit = shorter;
         }
     }
-}
-
-/// The first crossing of a shape, rounded to `f32`, with `t_min ≤ t ≤ t_max`.
-pub(super) fn first_crossing(shape: &Shape, ray: &Ray, t_min: f32, t_max: f32) -> Option<f32> {
-    first_in_range(shape.crossings(ray.origin.to_f64(), ray.direction.to_f64()), t_min, t_max)
-}
-
-fn first_in_range(crossings: Crossings, t_min: f32, t_max: f32) -> Option<f32> {
-    crossings.as_slice().iter().map(|&t| t as f32).find(|&t| t_min <= t).filter(|&t| t <= t_max)
 }
 
 /// Offer the unbounded planes, which are in no tree.
@@ -116,17 +123,14 @@ pub(super) fn planes<G: Goal>(primitives: &Primitives, rays: &mut PreparedRays, 
     for index in 0..rays.len() {
         let ray = rays.ray(index);
         for (id, plane) in (primitives.first_plane()..).zip(primitives.planes()) {
-            let limit = rays.limit(index);
-            if limit < rays.t_min(index) {
+            let mut limit = rays.limit(index);
+            if limit < ray.t_min {
                 break;
             }
             counts.primitive_tests += 1;
             let crossings = plane.crossings(ray.origin.to_f64(), ray.direction.to_f64());
-            if let Some(t) = first_in_range(crossings, rays.t_min(index), limit)
-                && let Some(shorter) = goal.offer(index, t, id, limit)
-            {
-                rays.set_limit(index, shorter);
-            }
+            offer_crossings(goal, index, id, crossings, ray.t_min, &mut limit);
+            rays.set_limit(index, limit);
         }
     }
     counts

@@ -2,10 +2,11 @@
 
 use super::Walk;
 use super::prepared::NodeRay;
+use super::slabs::Slabs;
 use crate::tree::goal::Goal;
 use crate::tree::query::Counts;
-use crate::tree::wide::{Child, ChildKind, Node, WIDTH};
-use simd::{F32Lanes, MaskLanes, Simd};
+use crate::tree::wide::{Child, ChildKind, WIDTH};
+use simd::Simd;
 
 /// Children that wait to be visited, nearest last, with the parameter where the ray enters them.
 #[derive(Debug, Default)]
@@ -51,11 +52,11 @@ pub(super) fn walk<S: Simd, G: Goal>(
             ChildKind::Interior(node) => {
                 counts.node_steps += 1;
                 let node = &walk.tree.nodes[node];
-                let (mask, entry) = enter(token, node, &ray, &far, octant, limit);
+                let ray = NodeRay { limit, ..ray };
+                let (mask, entry) = Slabs::load(token, node, octant).enter(token, &ray, &far);
                 let keys = (&mut stack.entry[top..top + WIDTH]).try_into().expect("WIDTH entries");
                 let values = (&mut stack.child[top..top + WIDTH]).try_into().expect("WIDTH children");
-                let children = node.child.map(|child| child.0);
-                top += token.compress_in_order(mask, &node.order[octant], entry, &children, keys, values);
+                top += token.compress_in_order(mask, &node.order[octant], entry, node.children(), keys, values);
             }
             ChildKind::Leaf { kind, first, count } => {
                 walk.leaf(token, index, kind, first, count, counts);
@@ -63,19 +64,4 @@ pub(super) fn walk<S: Simd, G: Goal>(
             }
         }
     }
-}
-
-/// Which children of `node` the ray enters, and where.
-#[inline(always)]
-fn enter<S: Simd>(token: S, node: &Node, ray: &NodeRay, far: &[f32; 3], octant: usize, limit: f32) -> (u16, S::F32x16) {
-    let splat = |value| S::F32x16::splat(token, value);
-    let slab = |axis: usize, upper: bool, offset: f32| {
-        let row = axis + if upper == (octant >> axis & 1 == 0) { 3 } else { 0 };
-        S::F32x16::load(token, &node.planes[row]).mul_add_fast(splat(ray.inverse[axis]), splat(offset))
-    };
-    let near = |axis| slab(axis, false, ray.near[axis]);
-    let leave = |axis| slab(axis, true, far[axis]);
-    let entry = near(0).max(near(1)).max(near(2).max(splat(ray.t_min)));
-    let exit = leave(0).min(leave(1)).min(leave(2).min(splat(limit)));
-    (entry.le(exit).bits() as u16, entry)
 }

@@ -9,11 +9,12 @@
 //! Rays are first sorted by octant, so that all rays of a list enter a box through the same three planes.
 
 use super::single::{self, Stack};
+use super::slabs::Slabs;
 use super::{PreparedRays, Walk};
 use crate::tree::goal::Goal;
 use crate::tree::query::{CHUNK, Counts};
 use crate::tree::wide::{Child, ChildKind, Node, WIDTH};
-use simd::{F32Lanes, MaskLanes, Simd};
+use simd::Simd;
 
 /// Lists shorter than this are walked ray by ray: a node costs more to load than it saves.
 const MIN_LIST: usize = 4;
@@ -26,6 +27,8 @@ const SPARE: usize = 32;
 pub(in crate::tree) struct Lists {
     /// Ray numbers of all waiting lists, the one to be worked off next on top.
     ids: Vec<u16>,
+    /// The rays of each octant.
+    octants: [Vec<u16>; 8],
     /// The list at hand.
     current: Vec<u16>,
     /// The children that each ray of the list at hand enters.
@@ -42,16 +45,20 @@ pub(super) fn walk<S: Simd, G: Goal, const SLACK: bool>(token: S, walk: &mut Wal
     let mut lists = std::mem::take(walk.lists);
     // Every level leaves at most 15 lists behind, each no longer than the chunk.
     lists.ids.resize((walk.tree.depth() * WIDTH + 2) * CHUNK + SPARE, 0);
-    for octant in 0..8 {
-        let rays = &walk.rays;
-        let mut len = 0;
-        for index in 0..rays.len() {
-            lists.ids[len] = index as u16;
-            len += usize::from(rays.octant[index] == octant && rays.nodes[index].limit >= rays.nodes[index].t_min);
+    for bucket in &mut lists.octants {
+        bucket.clear();
+    }
+    for (index, (ray, &octant)) in walk.rays.nodes.iter().zip(&walk.rays.octant).enumerate() {
+        if ray.limit >= ray.t_min {
+            lists.octants[octant as usize & 7].push(index as u16);
         }
+    }
+    for octant in 0..8 {
+        let len = lists.octants[octant].len();
         if len > 0 {
+            lists.ids[..len].copy_from_slice(&lists.octants[octant]);
             lists.waiting.push((Child::interior(0), len));
-            work_off::<S, G, SLACK>(token, walk, &mut lists, len, octant as usize, counts);
+            work_off::<S, G, SLACK>(token, walk, &mut lists, len, octant, counts);
         }
     }
     *walk.lists = lists;
@@ -103,23 +110,12 @@ fn enter<S: Simd, const SLACK: bool>(
     octant: usize,
     masks: &mut [u16],
 ) -> u16 {
-    let plane = |axis: usize, upper: bool| {
-        let row = axis + if upper == (octant >> axis & 1 == 0) { 3 } else { 0 };
-        S::F32x16::load(token, &node.planes[row])
-    };
-    let near = [plane(0, false), plane(1, false), plane(2, false)];
-    let far = [plane(0, true), plane(1, true), plane(2, true)];
+    let slabs = Slabs::load(token, node, octant);
     let mut any = 0;
     for (mask, &id) in masks.iter_mut().zip(ids) {
         let ray = &rays.nodes[id as usize];
-        let far_offset = if SLACK { rays.far[id as usize] } else { ray.near };
-        let splat = |value| S::F32x16::splat(token, value);
-        let inverse = ray.inverse.map(splat);
-        let enter = |axis: usize| near[axis].mul_add_fast(inverse[axis], splat(ray.near[axis]));
-        let leave = |axis: usize| far[axis].mul_add_fast(inverse[axis], splat(far_offset[axis]));
-        let entry = enter(0).max(enter(1)).max(enter(2).max(splat(ray.t_min)));
-        let exit = leave(0).min(leave(1)).min(leave(2).min(splat(ray.limit)));
-        *mask = entry.le(exit).bits() as u16;
+        let far = if SLACK { &rays.far[id as usize] } else { &ray.near };
+        *mask = slabs.enter(token, ray, far).0;
         any |= *mask;
     }
     any
@@ -134,7 +130,7 @@ fn distribute<S: Simd>(token: S, node: &Node, octant: usize, any: u16, lists: &m
             continue;
         }
         let len = token.append_matching(&lists.masks, &lists.current, bit, &mut lists.ids[top..]);
-        lists.waiting.push((node.child[(lane & 15) as usize], len));
+        lists.waiting.push((node.child((lane & 15) as usize), len));
         top += len;
     }
     top
