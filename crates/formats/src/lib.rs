@@ -6,6 +6,7 @@
 //! | `.nff` | scene (Haines' Neutral File Format) | [`load`] |
 //! | `.obj` | mesh with materials (Wavefront OBJ and MTL) | [`load`] |
 //! | `.ply` | mesh | [`load`] |
+//! | `.png` | picture | [`png::encode`] (writes only) |
 //!
 //! # Invariants
 //! * Every file is untrusted: whatever its bytes, the answer is a scene or an [`Error`], in time and memory bounded by
@@ -23,6 +24,7 @@ mod mesh;
 mod nff;
 mod obj;
 mod ply;
+pub mod png;
 mod polygon;
 mod source;
 mod suggest;
