@@ -5,7 +5,7 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 /// Two vectors as one; `.0` holds the lower lanes. Floats, integers or masks, as `V` is.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair<V>(V, V);
+pub struct Pair<V>(pub(crate) V, pub(crate) V);
 
 /// An array type and the one of twice its length.
 pub trait Double {

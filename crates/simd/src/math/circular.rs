@@ -44,12 +44,11 @@ pub fn sin_cos<F: F32Lanes>(token: F::Token, x: F) -> (F, F) {
 
     let bit = |value| F::U32::splat(token, value);
     let even = (quadrant & bit(1)).eq(bit(0));
-    let sign_of = |quadrant: F::U32| (quadrant & bit(2)).shl::<30>();
-    let signed = |value: F, sign: F::U32| F::from_bits(value.to_bits() ^ sign);
-    let sign_of_x = x.to_bits() & bit(1 << 31);
+    let sin_sign = (quadrant & bit(2)).shl::<30>() ^ (x.to_bits() & bit(1 << 31));
+    let cos_sign = ((quadrant + bit(1)) & bit(2)).shl::<30>();
     (
-        signed(F::select(even, sin, cos), sign_of(quadrant) ^ sign_of_x),
-        signed(F::select(even, cos, sin), sign_of(quadrant + bit(1))),
+        F::from_bits(F::select(even, sin, cos).to_bits() ^ sin_sign),
+        F::from_bits(F::select(even, cos, sin).to_bits() ^ cos_sign),
     )
 }
 

@@ -44,7 +44,12 @@ pub(super) fn clamp<F: F32Lanes>(token: F::Token, x: F, low: f32, high: f32) -> 
 /// `x · 2^exponent` for exponents within ±252. Two factors, because one alone may be out of range.
 #[inline(always)]
 pub(super) fn scale<F: F32Lanes>(token: F::Token, x: F, exponent: F::U32) -> F {
-    let power = |exponent: F::U32| F::from_bits((exponent + F::U32::splat(token, 127)).shl::<23>());
     let half = exponent.sar::<1>();
-    x * power(half) * power(exponent - half)
+    x * power_of_2(token, half) * power_of_2(token, exponent - half)
+}
+
+/// `2^exponent` for exponents of normal numbers.
+#[inline(always)]
+fn power_of_2<F: F32Lanes>(token: F::Token, exponent: F::U32) -> F {
+    F::from_bits((exponent + F::U32::splat(token, 127)).shl::<23>())
 }

@@ -69,7 +69,7 @@ fn comparable<F: F32Lanes>(token: F::Token, x: F, y: F) -> (F, F) {
     let high = x.max(y);
     let factor = F::select(high.gt(c(1e30)), c(0.25), F::select(high.lt(c(1e-30)), c(1_073_741_824.0), c(1.0)));
     let infinite = high.eq(c(f32::INFINITY));
-    let finite = |size: F| F::select(size.eq(high), c(1.0), c(0.0));
-    let comparable = |size: F| F::select(infinite, finite(size), size * factor);
-    (comparable(x), comparable(y))
+    let x_at_infinity = F::select(x.eq(high), c(1.0), c(0.0));
+    let y_at_infinity = F::select(y.eq(high), c(1.0), c(0.0));
+    (F::select(infinite, x_at_infinity, x * factor), F::select(infinite, y_at_infinity, y * factor))
 }

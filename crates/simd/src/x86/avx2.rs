@@ -22,6 +22,18 @@ impl Simd for Avx2 {
     fn append_matching(self, masks: &[u16], ids: &[u16], bit: u16, out: &mut [u16]) -> usize {
         left_pack::append_matching(self, masks, ids, bit, out)
     }
+    #[inline(always)]
+    fn compress_in_order(
+        self,
+        mask: u16,
+        order: &[u8; 16],
+        keys: Pair<F32x8>,
+        values: &[u32; 16],
+        out_keys: &mut [f32; 16],
+        out_values: &mut [u32; 16],
+    ) -> usize {
+        left_pack::compress_in_order(mask, order, keys, values, out_keys, out_values)
+    }
 }
 
 impl Sse for Avx2 {
