@@ -231,6 +231,12 @@ impl Vec3f {
 }
 
 impl Vec3d {
+    /// The unit vector along this one, whatever its length: neither overflows nor underflows on the way. Not finite for
+    /// a zero vector and where a component is not finite.
+    pub fn direction(self) -> Self {
+        (self / self.abs().max_component()).normalize()
+    }
+
     /// Rounded to single precision.
     #[inline(always)]
     pub fn to_f32(self) -> Vec3f {

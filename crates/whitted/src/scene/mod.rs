@@ -5,6 +5,7 @@
 
 mod camera;
 mod description;
+mod light;
 mod settings;
 
 pub use camera::Camera;

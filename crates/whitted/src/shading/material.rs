@@ -85,3 +85,54 @@ pub enum Texture {
         size: f32,
     },
 }
+
+impl Material {
+    /// True if light passes its surface.
+    pub fn is_transmissive(&self) -> bool {
+        self.transmit.max_component() > 0.0
+    }
+
+    /// True if it mirrors.
+    pub fn is_reflective(&self) -> bool {
+        self.reflect.max_component() > 0.0
+    }
+
+    /// What makes the material impossible, if anything: a number that is not finite, a negative strength, an index of
+    /// refraction or size of checkers that is not positive.
+    pub fn fault(&self) -> Option<&'static str> {
+        let strengths =
+            [Vec3f::splat(self.ambient), Vec3f::splat(self.diffuse), self.specular, self.reflect, self.transmit];
+        [
+            (!strengths.into_iter().all(is_amount), "a strength is negative or not finite"),
+            (!self.color.colors().into_iter().all(is_amount), "its colour is negative or not finite"),
+            (!is_amount(Vec3f::splat(self.exponent)), "the exponent of its highlight is negative or not finite"),
+            (!(self.ior > 0.0 && self.ior.is_finite()), "its index of refraction must be finite and above 0"),
+            (!is_amount(self.absorb), "its absorption is negative or not finite"),
+            (!self.color.has_size(), "the cubes of its checkerboard need a finite size above 0"),
+        ]
+        .into_iter()
+        .find_map(|(is_wrong, fault)| is_wrong.then_some(fault))
+    }
+}
+
+impl Texture {
+    /// All colours in it.
+    fn colors(&self) -> [Vec3f; 2] {
+        match *self {
+            Self::Color(color) => [color, color],
+            Self::Checker { even, odd, .. } => [even, odd],
+        }
+    }
+
+    fn has_size(&self) -> bool {
+        match *self {
+            Self::Color(_) => true,
+            Self::Checker { size, .. } => size > 0.0 && size.is_finite(),
+        }
+    }
+}
+
+/// True if all components are finite and not negative.
+fn is_amount(amount: Vec3f) -> bool {
+    amount.to_array().into_iter().all(|a| a >= 0.0 && a.is_finite())
+}

@@ -1,0 +1,25 @@
+//! One ray as a vector of one lane: the same code, and so the same bits, as for many.
+
+use crate::math::{Vec3, Vec3f};
+use simd::{F32Lanes, Scalar, ScalarF32};
+
+/// A single number in the vocabulary of lanes.
+pub(super) type One = ScalarF32<1>;
+
+pub(super) fn one(value: f32) -> One {
+    One::splat(Scalar, value)
+}
+
+pub(super) fn ones(vector: Vec3f) -> Vec3<One> {
+    vector.map(one)
+}
+
+pub(super) fn value(one: One) -> f32 {
+    let mut value = [0.0];
+    one.store(&mut value);
+    value[0]
+}
+
+pub(super) fn values(ones: Vec3<One>) -> Vec3f {
+    ones.map(value)
+}
