@@ -18,6 +18,15 @@ pub trait Simd: Copy + Send + Sync + Debug + 'static {
     /// Short lower-case name as used by `--simd`: `scalar`, `sse4.2`, `avx2`, `avx512`.
     const NAME: &'static str;
 
+    /// `(x, y, z, w)` to `(y, z, x, w)`, the turn that a cross product is made of.
+    #[inline(always)]
+    fn yzx(self, v: Self::F32x4) -> Self::F32x4 {
+        let mut lanes = [0.0; 4];
+        v.store(&mut lanes);
+        let [x, y, z, w] = lanes;
+        Self::F32x4::load(self, &[y, z, x, w])
+    }
+
     /// Append `ids[i]` to the front of `out` for every `i` with `masks[i] & bit != 0`, in order; return how many.
     ///
     /// The work of one child of a node in a stream walk. `masks` and `ids` have equal length.
@@ -153,6 +162,8 @@ pub trait F32Lanes:
     /// Lanes of a two's complement integer, rounded to nearest even.
     fn from_int(value: Self::U32) -> Self;
 
+    /// The sum of the lanes, by adding the upper half to the lower until one is left.
+    fn reduce_add(self) -> f32;
     /// The smallest lane, by [`min`](Self::min) of the lower half with the upper until one is left (which settles
     /// the sign of a zero and what a NaN does).
     fn reduce_min(self) -> f32;

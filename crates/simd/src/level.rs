@@ -30,14 +30,16 @@ impl Level {
 
     /// Every instruction set of this CPU, narrowest first. Never empty.
     pub fn available() -> Vec<Self> {
-        let mut levels = vec![Self::Scalar(Scalar)];
-        #[cfg(target_arch = "x86_64")]
-        {
-            levels.extend(Sse42::detect().map(Self::Sse42));
-            levels.extend(Avx2::detect().map(Self::Avx2));
-            levels.extend(Avx512::detect().map(Self::Avx512));
-        }
-        levels
+        let levels = [
+            Some(Self::Scalar(Scalar)),
+            #[cfg(target_arch = "x86_64")]
+            Sse42::detect().map(Self::Sse42),
+            #[cfg(target_arch = "x86_64")]
+            Avx2::detect().map(Self::Avx2),
+            #[cfg(target_arch = "x86_64")]
+            Avx512::detect().map(Self::Avx512),
+        ];
+        levels.into_iter().flatten().collect()
     }
 
     /// Every name that [`by_name`](Self::by_name) can know on some CPU, narrowest first.

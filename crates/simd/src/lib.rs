@@ -26,6 +26,7 @@ mod memory;
 #[cfg(target_arch = "x86_64")]
 mod pair;
 mod scalar;
+mod vec4;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -35,5 +36,6 @@ pub use lanes::{F32Lanes, MaskLanes, Simd, U32Lanes};
 pub use level::Level;
 pub use memory::advise_huge_pages;
 pub use scalar::{Scalar, ScalarF32, ScalarMask, ScalarU32};
+pub use vec4::Vec4;
 #[cfg(target_arch = "x86_64")]
 pub use x86::{Avx2, Avx512, Sse42};

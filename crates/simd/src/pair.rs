@@ -130,6 +130,10 @@ where
         Self(V::from_int(value.0), V::from_int(value.1))
     }
     #[inline(always)]
+    fn reduce_add(self) -> f32 {
+        (self.0 + self.1).reduce_add()
+    }
+    #[inline(always)]
     fn reduce_min(self) -> f32 {
         self.0.min(self.1).reduce_min()
     }

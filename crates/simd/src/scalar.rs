@@ -222,6 +222,10 @@ where
         Self(value.0.map(|a| a as i32 as f32))
     }
     #[inline(always)]
+    fn reduce_add(self) -> f32 {
+        fold_halves(self.0, |a, b| a + b)
+    }
+    #[inline(always)]
     fn reduce_min(self) -> f32 {
         fold_halves(self.0, |a, b| if a < b { a } else { b })
     }

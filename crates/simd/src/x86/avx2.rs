@@ -19,6 +19,10 @@ impl Simd for Avx2 {
     const NAME: &'static str = "avx2";
 
     #[inline(always)]
+    fn yzx(self, v: F32x4<Self>) -> F32x4<Self> {
+        v.yzx()
+    }
+    #[inline(always)]
     fn append_matching(self, masks: &[u16], ids: &[u16], bit: u16, out: &mut [u16]) -> usize {
         left_pack::append_matching(self, masks, ids, bit, out)
     }

@@ -22,6 +22,10 @@ impl Simd for Avx512 {
     const NAME: &'static str = "avx512";
 
     #[inline(always)]
+    fn yzx(self, v: F32x4<Self>) -> F32x4<Self> {
+        v.yzx()
+    }
+    #[inline(always)]
     fn append_matching(self, masks: &[u16], ids: &[u16], bit: u16, out: &mut [u16]) -> usize {
         assert!(masks.len() == ids.len() && out.len() >= ids.len() + STEP);
         let (mask_steps, mask_rest) = masks.as_chunks::<STEP>();

@@ -82,6 +82,10 @@ impl F32Lanes for F32x16 {
     select!(|mask, set, unset| _mm512_mask_blend_ps(mask, unset, set));
 
     #[inline(always)]
+    fn reduce_add(self) -> f32 {
+        (self.low() + self.high()).reduce_add()
+    }
+    #[inline(always)]
     fn reduce_min(self) -> f32 {
         self.low().min(self.high()).reduce_min()
     }

@@ -18,6 +18,10 @@ impl Simd for Sse42 {
     const NAME: &'static str = "sse4.2";
 
     #[inline(always)]
+    fn yzx(self, v: F32x4<Self>) -> F32x4<Self> {
+        v.yzx()
+    }
+    #[inline(always)]
     fn append_matching(self, masks: &[u16], ids: &[u16], bit: u16, out: &mut [u16]) -> usize {
         left_pack::append_matching(self, masks, ids, bit, out)
     }

@@ -4,7 +4,7 @@ use crate::{F32Lanes, MaskLanes, Simd, U32Lanes};
 use std::arch::x86_64::*;
 
 /// A token of SSE4.2 or more. Sealed: only the tokens of this module's siblings implement it.
-pub trait Sse: Simd {
+pub trait Sse: Simd<F32x4 = F32x4<Self>> {
     /// `a * b + c` with one rounding.
     fn fma(self, a: __m128, b: __m128, c: __m128) -> __m128;
     /// `a * b + c`, however it is fastest.
@@ -99,6 +99,11 @@ impl<S: Sse> F32Lanes for F32x4<S> {
         Self(self.1.mul_add_fast(self.0, factor.0, addend.0), self.1)
     }
     #[inline(always)]
+    fn reduce_add(self) -> f32 {
+        let halves = self + self.swap_halves();
+        (halves + halves.swap_neighbours()).first()
+    }
+    #[inline(always)]
     fn reduce_min(self) -> f32 {
         let halves = self.min(self.swap_halves());
         halves.min(halves.swap_neighbours()).first()
@@ -111,6 +116,12 @@ impl<S: Sse> F32Lanes for F32x4<S> {
 }
 
 impl<S: Sse> F32x4<S> {
+    /// See [`Simd::yzx`].
+    #[inline(always)]
+    pub(super) fn yzx(self) -> Self {
+        // SAFETY: `self` exists, so the CPU has the token's features.
+        Self(unsafe { _mm_shuffle_ps::<0b_11_00_10_01>(self.0, self.0) }, self.1)
+    }
     methods! {
         swap_halves(a) -> Self = _mm_movehl_ps(a, a);
         swap_neighbours(a) -> Self = _mm_shuffle_ps::<0b_10_11_00_01>(a, a);

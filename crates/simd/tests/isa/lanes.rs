@@ -1,7 +1,7 @@
 //! Every lane operation at every level of this CPU, against plain Rust on one lane.
 
 use crate::common::{ForLanes, NASTY, SplitMix64, bits_of, for_widths, levels, nasty, same_float};
-use simd::{F32Lanes, Kernel, Level, MaskLanes, Scalar, ScalarF32, ScalarU32, Simd, U32Lanes, dispatch};
+use simd::{F32Lanes, Kernel, Level, MaskLanes, Scalar, ScalarF32, Simd, U32Lanes, dispatch, lanes_from_fn};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What an operation does to three floats and three integers, as bits; a mask counts as 1 or 0.
@@ -26,8 +26,8 @@ macro_rules! operations {
                 }
             }
         )*
-        fn $run(level: Level) {
-            $(for_widths(level, &Compare::<$name>(level, $name));)*
+        fn $run(level: Level, inputs: &[Vec<u32>; 3]) {
+            $(for_widths(level, &Compare::<$name>::new(level, inputs));)*
         }
     };
 }
@@ -83,31 +83,44 @@ operations! { run_all:
     mask_bits false |t, [a, b, _], _| one::<F>(t, MaskLanes::from_bits(t, a.lt(b).bits()));
 }
 
-struct Compare<O>(Level, O);
+struct Compare<'a, O> {
+    level: Level,
+    inputs: &'a [Vec<u32>; 3],
+    expected: Vec<u32>,
+    operation: std::marker::PhantomData<O>,
+}
 
-impl<O: Operation> ForLanes for Compare<O> {
+impl<'a, O: Operation> Compare<'a, O> {
+    fn new(level: Level, inputs: &'a [Vec<u32>; 3]) -> Self {
+        let expected = apply_to_all::<O, ScalarF32<1>>(Scalar, inputs);
+        Self { level, inputs, expected, operation: std::marker::PhantomData }
+    }
+}
+
+impl<O: Operation> ForLanes for Compare<'_, O> {
     #[inline(always)]
     fn run<F: F32Lanes>(&self, token: F::Token) {
-        let inputs = inputs();
-        let lane = |step: usize, of: usize| &inputs[of][step * F::WIDTH..];
-        for step in 0..inputs[0].len() / F::WIDTH {
-            let u = [0, 1, 2].map(|of| F::U32::load_slice(token, lane(step, of)));
-            let found = bits_of(O::apply::<F>(token, u.map(F::from_bits), u));
-            for (i, found) in found.into_iter().enumerate() {
-                let u = [0, 1, 2].map(|of| ScalarU32::<1>::load_slice(Scalar, &lane(step, of)[i..]));
-                let expected = bits_of(O::apply::<ScalarF32<1>>(Scalar, u.map(ScalarF32::from_bits), u))[0];
-                let same = if O::FLOAT { same_float(found, expected) } else { found == expected };
-                let bits = [0, 1, 2].map(|of| lane(step, of)[i]);
-                assert!(
-                    same,
-                    "{} x{} {}: {found:#x} but scalar {expected:#x} for {bits:x?} = {:?}",
-                    self.0,
-                    F::WIDTH,
-                    O::NAME,
-                    bits.map(f32::from_bits)
-                );
-            }
-        }
+        let found = apply_to_all::<O, F>(token, self.inputs);
+        compare(&format!("{} x{} {}", self.level, F::WIDTH, O::NAME), O::FLOAT, self.inputs, &found, &self.expected);
+    }
+}
+
+#[inline(always)]
+fn apply_to_all<O: Operation, F: F32Lanes>(token: F::Token, inputs: &[Vec<u32>; 3]) -> Vec<u32> {
+    let mut found = vec![0; inputs[0].len()];
+    for at in (0..found.len()).step_by(F::WIDTH) {
+        let u = lanes_from_fn(|of| F::U32::load_slice(token, &inputs[of][at..]));
+        O::apply::<F>(token, lanes_from_fn(|of| F::from_bits(u[of])), u).store_slice(&mut found[at..]);
+    }
+    found
+}
+
+fn compare(what: &str, float: bool, inputs: &[Vec<u32>; 3], found: &[u32], expected: &[u32]) {
+    for (i, (&found, &expected)) in found.iter().zip(expected).enumerate() {
+        let same = if float { same_float(found, expected) } else { found == expected };
+        let bits = [0, 1, 2].map(|of| inputs[of][i]);
+        let floats = bits.map(f32::from_bits);
+        assert!(same, "{what}: {found:#x} but scalar {expected:#x} for {bits:x?} = {floats:?}");
     }
 }
 
@@ -139,8 +152,9 @@ fn inputs() -> [Vec<u32>; 3] {
 
 #[test]
 fn every_operation_equals_scalar() {
+    let inputs = inputs();
     for level in levels() {
-        run_all(level);
+        run_all(level, &inputs);
     }
 }
 
@@ -184,14 +198,17 @@ impl Across {
     }
 
     fn check_reductions<F: F32Lanes>(&self, lanes: F, expected: &[f32]) {
+        let mut sum = expected.to_vec();
         let mut low = expected.to_vec();
         let mut high = expected.to_vec();
         while low.len() > 1 {
             let half = low.len() / 2;
             let fold = |v: &[f32], f: fn(f32, f32) -> f32| (0..half).map(|i| f(v[i], v[i + half])).collect::<Vec<_>>();
+            sum = fold(&sum, |a, b| a + b);
             low = fold(&low, |a, b| if a < b { a } else { b });
             high = fold(&high, |a, b| if a > b { a } else { b });
         }
+        assert!(same_float(lanes.reduce_add().to_bits(), sum[0].to_bits()), "{} x{}", self.0, F::WIDTH);
         assert_eq!(lanes.reduce_min().to_bits(), low[0].to_bits(), "{} x{}", self.0, F::WIDTH);
         assert_eq!(lanes.reduce_max().to_bits(), high[0].to_bits(), "{} x{}", self.0, F::WIDTH);
     }

@@ -7,3 +7,4 @@ mod fma;
 mod lanes;
 mod lists;
 mod math;
+mod vec4;
