@@ -268,7 +268,7 @@ impl Tree {
     }
 
     fn leaf(&mut self, primitives: &Primitives, kind: LeafKind, references: &[Reference]) -> Child {
-        let ids: Vec<u32> = references.iter().map(|reference| reference.primitive).collect();
+        let ids: Vec<u32> = references.iter().map(Reference::primitive).collect();
         self.report.leaves += 1;
         self.report.references += ids.len();
         let first = self.leaves.push(primitives, self.scale, kind, &ids);

@@ -1,72 +1,97 @@
-//! Perfect splits: the boxes of what a plane leaves of a primitive on either side.
+//! Perfect splits: the boxes of what two parallel planes leave of a primitive.
 //!
-//! All in the tree's scale and in `f64`; results are rounded to `f32`, which the padding of the boxes covers.
+//! In the tree's scale and in `f32`: an edge point is off by a few ulp, which the padding of the boxes covers.
 
-use super::spatial_split::halves;
-use super::{Builder, Reference};
-use crate::geometry::{Kind, Sphere, Triangle};
-use crate::math::{Aabb, Vec3d};
+use super::{Bounds, Builder, Reference};
+use crate::geometry::Kind;
+
+/// A primitive in the form in which it is clipped.
+#[derive(Clone, Copy)]
+pub(super) enum Solid {
+    Triangle([[f32; 3]; 3]),
+    Sphere {
+        center: [f32; 3],
+        radius: f32,
+    },
+    /// Known by its box alone.
+    Boxed,
+}
 
 impl Builder<'_> {
-    /// The boxes of the parts of a reference below and above a plane, within the reference's box; may be empty.
-    pub(super) fn clip(&self, reference: &Reference, axis: usize, position: f32) -> (Aabb, Aabb) {
-        let (left, right) = halves(reference.bounds, axis, position);
-        let (below, above) = match self.primitives.kind(reference.primitive) {
-            Kind::Triangle(i) => clip_triangle(&self.primitives.triangle(i), self.scale, axis, position),
-            Kind::Sphere(i) => clip_sphere(&self.primitives.spheres()[i], self.scale, axis, position),
-            Kind::Shape(_) | Kind::Plane(_) => (reference.bounds, reference.bounds),
-        };
-        (left.intersection(below), right.intersection(above))
-    }
-}
-
-/// Grows by points of either side.
-struct Sides {
-    below: Aabb,
-    above: Aabb,
-}
-
-impl Sides {
-    fn add(&mut self, point: Vec3d, is_below: bool, is_above: bool) {
-        let point = point.to_f32();
-        let point = Aabb::new(point, point);
-        if is_below {
-            self.below = self.below.union(point);
-        }
-        if is_above {
-            self.above = self.above.union(point);
+    pub(super) fn solid(&self, reference: &Reference) -> Solid {
+        match self.primitives.kind(reference.primitive()) {
+            Kind::Triangle(i) => {
+                Solid::Triangle(self.primitives.triangle(i).vertices.map(|v| (v * self.scale).to_array()))
+            }
+            Kind::Sphere(i) => {
+                let sphere = self.primitives.spheres()[i];
+                Solid::Sphere { center: (sphere.center * self.scale).to_array(), radius: sphere.radius * self.scale }
+            }
+            Kind::Shape(_) | Kind::Plane(_) => Solid::Boxed,
         }
     }
 }
 
-fn clip_triangle(triangle: &Triangle, scale: f32, axis: usize, position: f32) -> (Aabb, Aabb) {
-    let mut sides = Sides { below: Aabb::EMPTY, above: Aabb::EMPTY };
-    let position = f64::from(position);
-    let vertices = triangle.vertices.map(|v| v.to_f64() * f64::from(scale));
+impl Solid {
+    /// The box of the part of a reference that lies between two planes across `axis`; may be empty.
+    #[inline(always)]
+    pub(super) fn slab(&self, reference: &Reference, axis: usize, lo: f32, hi: f32) -> Bounds {
+        let mut cut = reference.bounds;
+        cut.set_lo(axis, cut.lo(axis).max(lo));
+        cut.set_hi(axis, cut.hi(axis).min(hi));
+        match self {
+            Self::Triangle(vertices) => cut.intersection(triangle_slab(vertices, axis, lo, hi)),
+            Self::Sphere { center, radius } => cut.intersection(sphere_slab(*center, *radius, axis, lo, hi)),
+            Self::Boxed => cut,
+        }
+    }
+}
+
+/// The box around the parts of the edges between the planes.
+fn triangle_slab(vertices: &[[f32; 3]; 3], axis: usize, lo: f32, hi: f32) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
     for corner in 0..3 {
         let (from, to) = (vertices[corner], vertices[(corner + 1) % 3]);
-        let (start, end) = (from[axis] - position, to[axis] - position);
-        sides.add(from, start <= 0.0, start >= 0.0);
-        if (start < 0.0 && end > 0.0) || (start > 0.0 && end < 0.0) {
-            sides.add(from + (to - from) * (start / (start - end)), true, true);
+        let (start, end) = (from[axis], to[axis]);
+        if start.max(end) < lo || start.min(end) > hi {
+            continue;
+        }
+        bounds.include(if start < lo {
+            across(from, to, axis, lo)
+        } else if start > hi {
+            across(from, to, axis, hi)
+        } else {
+            from
+        });
+        // An end within the planes is the start of the next edge.
+        if end < lo {
+            bounds.include(across(from, to, axis, lo));
+        } else if end > hi {
+            bounds.include(across(from, to, axis, hi));
         }
     }
-    (sides.below, sides.above)
+    bounds
 }
 
-fn clip_sphere(sphere: &Sphere, scale: f32, axis: usize, position: f32) -> (Aabb, Aabb) {
-    let center = sphere.center * scale;
-    let radius = sphere.radius * scale;
-    let whole = Aabb::new(center, center).grown(radius);
-    let offset = f64::from(position) - f64::from(center[axis]);
-    let radius = f64::from(radius);
-    // A side that holds the centre is as wide as the sphere; the other one as the circle in the plane.
-    let circle = (radius * radius - offset * offset).max(0.0).sqrt() as f32;
-    let narrow = Aabb::new(center, center).grown(circle);
-    let narrow = |bounds: Aabb| {
-        let pick = |wide: f32, narrow: f32, a: usize| if a == axis { wide } else { narrow };
-        let corner = |w: crate::math::Vec3f, n: crate::math::Vec3f| [0, 1, 2].map(|a| pick(w[a], n[a], a)).into();
-        Aabb::new(corner(bounds.lo, narrow.lo), corner(bounds.hi, narrow.hi))
-    };
-    if offset >= 0.0 { (whole, narrow(whole)) } else { (narrow(whole), whole) }
+/// The point where an edge crosses a plane.
+fn across(from: [f32; 3], to: [f32; 3], axis: usize, plane: f32) -> [f32; 3] {
+    let share = (plane - from[axis]) / (to[axis] - from[axis]);
+    let mut point = [0.0; 3];
+    for a in 0..3 {
+        point[a] = from[a] + (to[a] - from[a]) * share;
+    }
+    point[axis] = plane;
+    point
+}
+
+/// As wide as the widest circle between the planes.
+fn sphere_slab(center: [f32; 3], radius: f32, axis: usize, lo: f32, hi: f32) -> Bounds {
+    let away = (lo - center[axis]).max(center[axis] - hi).max(0.0);
+    let circle = (radius * radius - away * away).max(0.0).sqrt();
+    let mut bounds = Bounds::EMPTY;
+    bounds.include(center.map(|c| (c - circle).next_down()));
+    bounds.include(center.map(|c| (c + circle).next_up()));
+    bounds.set_lo(axis, f32::NEG_INFINITY);
+    bounds.set_hi(axis, f32::INFINITY);
+    bounds
 }

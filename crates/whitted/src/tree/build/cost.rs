@@ -1,8 +1,7 @@
 //! What nodes and leaves cost.
 
 use super::super::leaf::BLOCK;
-use super::BuildOptions;
-use crate::math::Aabb;
+use super::{Bounds, BuildOptions};
 
 /// Expected cost of testing `count` primitives.
 ///
@@ -15,8 +14,8 @@ pub(super) fn leaf(options: &BuildOptions, count: usize) -> f32 {
 
 /// Expected cost of a node of half area `area` with two children.
 #[inline(always)]
-pub(super) fn split(options: &BuildOptions, area: f32, left: (Aabb, usize), right: (Aabb, usize)) -> f32 {
-    let side = |(bounds, count): (Aabb, usize)| bounds.half_area() * leaf(options, count);
+pub(super) fn split(options: &BuildOptions, area: f32, left: (Bounds, usize), right: (Bounds, usize)) -> f32 {
+    let side = |(bounds, count): (Bounds, usize)| bounds.half_area() * leaf(options, count);
     // In a box without area every ray that enters it enters both halves.
     let chance = if area > 0.0 { (side(left) + side(right)) / area } else { leaf(options, left.1 + right.1) };
     options.traversal_cost + chance

@@ -8,6 +8,7 @@
 //! Work happens in one array with room to spare: a node owns a slice of it, hands parts of the room to its children,
 //! and may only cut references while there is room left. That bounds references for any input.
 
+mod bounds;
 mod clip;
 mod cost;
 mod object_split;
@@ -18,6 +19,7 @@ use super::leaf::{BLOCK, LeafKind};
 use super::wide::MAX_LEAF_BLOCKS;
 use crate::geometry::{Kind, Primitives};
 use crate::math::Aabb;
+pub(super) use bounds::Bounds;
 use object_split::ObjectSplit;
 use spatial_split::SpatialSplit;
 
@@ -44,16 +46,38 @@ impl From<TreeKind> for BuildOptions {
     }
 }
 
-/// A primitive, or the part of it that lies in one cell.
+/// A primitive, or the part of it that lies in one cell: its box, tagged with its number.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reference {
-    pub bounds: Aabb,
-    pub primitive: u32,
+    bounds: Bounds,
 }
+
+const _: () = assert!(size_of::<Reference>() == 32, "half a cache line");
 
 impl Reference {
     /// Fills the spare room of the array.
-    const NONE: Self = Self { bounds: Aabb::EMPTY, primitive: u32::MAX };
+    const NONE: Self = Self { bounds: Bounds::EMPTY };
+
+    fn new(bounds: Aabb, primitive: u32) -> Self {
+        Self { bounds: Bounds::new(bounds).tagged(primitive) }
+    }
+
+    fn with_bounds(self, bounds: Bounds) -> Self {
+        Self { bounds: bounds.tagged(self.primitive()) }
+    }
+
+    pub(super) fn primitive(&self) -> u32 {
+        self.bounds.tag()
+    }
+}
+
+/// The box around references.
+fn around(references: &[Reference]) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for reference in references {
+        bounds = bounds.union(reference.bounds);
+    }
+    bounds
 }
 
 /// A node of the binary tree with everything under it.
@@ -106,14 +130,14 @@ pub(super) fn build(primitives: &Primitives, scale: f32, options: &BuildOptions)
     let mut references: Vec<Reference> = (0..primitives.bounded_count() as u32)
         .filter_map(|primitive| {
             let bounds = primitives.primitive_bounds(primitive)?;
-            Some(Reference { bounds: Aabb::new(bounds.lo * scale, bounds.hi * scale), primitive })
+            Some(Reference::new(Aabb::new(bounds.lo * scale, bounds.hi * scale), primitive))
         })
         .collect();
     let count = references.len();
     let dropped = primitives.bounded_count() - count;
     references.resize(count + spare_room(options.kind, count), Reference::NONE);
-    let bounds = references[..count].iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds));
-    let builder = Builder { primitives, scale, options, root_area: bounds.half_area() };
+    let root_area = around(&references[..count]).half_area();
+    let builder = Builder { primitives, scale, options, root_area };
     let root = (count > 0).then(|| builder.node(Cell { references: &mut references, count, first: 0, level: 0 }));
     Binary { root, references, dropped }
 }
@@ -159,6 +183,9 @@ const MAX_COSTED_LEVEL: usize = 96;
 /// Cells with more references than this build their halves in parallel.
 const PARALLEL: usize = 4096;
 
+/// So few references are not divided: half a block costs as much as a whole one.
+const MIN_SPLIT: usize = 4;
+
 /// Spatial splits are tried where the boxes of the best object split overlap by more than this share of the root's
 /// area (Stich et al. 2009, §4.5).
 const MIN_OVERLAP: f32 = 1e-5;
@@ -173,7 +200,7 @@ enum Split {
 
 impl Builder<'_> {
     fn node(&self, cell: Cell<'_>) -> Subtree {
-        let bounds = cell.used().iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds));
+        let bounds = around(cell.used());
         let Some(split) = self.choose(&cell, bounds) else {
             return self.leaf(cell);
         };
@@ -187,11 +214,11 @@ impl Builder<'_> {
     }
 
     /// The cheapest split, or `None` where a leaf is cheaper still.
-    fn choose(&self, cell: &Cell<'_>, bounds: Aabb) -> Option<Split> {
+    fn choose(&self, cell: &Cell<'_>, bounds: Bounds) -> Option<Split> {
         let count = cell.count;
         let leaf_cost = cost::leaf(self.options, count);
         let fits_leaf = count <= MAX_LEAF_BLOCKS * BLOCK;
-        if count <= 1 || cell.level >= MAX_COSTED_LEVEL {
+        if count <= MIN_SPLIT || cell.level >= MAX_COSTED_LEVEL {
             return (count > BLOCK).then_some(Split::Middle);
         }
         let object = object_split::find(self.options, cell.used(), bounds);
@@ -222,7 +249,7 @@ impl Builder<'_> {
         }
     }
 
-    fn find_spatial(&self, cell: &Cell<'_>, bounds: Aabb) -> Option<SpatialSplit> {
+    fn find_spatial(&self, cell: &Cell<'_>, bounds: Bounds) -> Option<SpatialSplit> {
         spatial_split::find(self, cell.used(), bounds).filter(|split| split.added <= cell.room())
     }
 
@@ -253,14 +280,13 @@ impl Builder<'_> {
     fn leaf(&self, cell: Cell<'_>) -> Subtree {
         let Cell { references, count, first, .. } = cell;
         let used = &mut references[..count];
-        used.sort_unstable_by_key(|r| r.primitive);
+        used.sort_unstable_by_key(Reference::primitive);
         let mut leaves = Vec::new();
         let mut start = 0;
         for run in used.chunk_by(|a, b| self.kind(a) == self.kind(b)) {
             for part in run.chunks(MAX_LEAF_BLOCKS * BLOCK) {
-                let bounds = part.iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds));
                 leaves.push(Subtree::Leaf {
-                    bounds,
+                    bounds: around(part).to_aabb(),
                     kind: self.kind(&part[0]),
                     first: first + start,
                     count: part.len(),
@@ -272,7 +298,7 @@ impl Builder<'_> {
     }
 
     fn kind(&self, reference: &Reference) -> LeafKind {
-        match self.primitives.kind(reference.primitive) {
+        match self.primitives.kind(reference.primitive()) {
             Kind::Triangle(_) => LeafKind::Triangles,
             Kind::Sphere(_) => LeafKind::Spheres,
             Kind::Shape(_) | Kind::Plane(_) => LeafKind::Shapes,

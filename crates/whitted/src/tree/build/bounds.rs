@@ -1,0 +1,98 @@
+//! The builder's own form of a box, in which a union is eight minima: two instructions.
+
+use crate::math::Aabb;
+
+/// A box: lower corner, tag, negated upper corner, unused.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(in crate::tree) struct Bounds([f32; 8]);
+
+impl Bounds {
+    /// The box that contains nothing.
+    pub(super) const EMPTY: Self = Self([f32::INFINITY; 8]);
+
+    pub(super) fn new(bounds: Aabb) -> Self {
+        let (lo, hi) = (bounds.lo, bounds.hi);
+        Self([lo.x, lo.y, lo.z, 0.0, -hi.x, -hi.y, -hi.z, 0.0])
+    }
+
+    /// The same box with 32 bits kept beside it; they survive copies, not unions.
+    pub(super) fn tagged(mut self, tag: u32) -> Self {
+        self.0[3] = f32::from_bits(tag);
+        self
+    }
+
+    pub(super) fn tag(&self) -> u32 {
+        self.0[3].to_bits()
+    }
+
+    pub(in crate::tree) fn to_aabb(self) -> Aabb {
+        let [lx, ly, lz, _, hx, hy, hz, _] = self.0;
+        Aabb::new([lx, ly, lz].into(), [-hx, -hy, -hz].into())
+    }
+
+    #[inline(always)]
+    pub(super) fn union(self, other: Self) -> Self {
+        let mut out = self;
+        for i in 0..8 {
+            out.0[i] = if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] };
+        }
+        out
+    }
+
+    #[inline(always)]
+    pub(super) fn intersection(self, other: Self) -> Self {
+        let mut out = self;
+        for i in 0..8 {
+            out.0[i] = if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] };
+        }
+        out
+    }
+
+    /// Grow by a point.
+    #[inline(always)]
+    pub(super) fn include(&mut self, [x, y, z]: [f32; 3]) {
+        *self = self.union(Self([x, y, z, 0.0, -x, -y, -z, 0.0]));
+    }
+
+    #[inline(always)]
+    pub(super) fn lo(&self, axis: usize) -> f32 {
+        self.0[axis]
+    }
+
+    #[inline(always)]
+    pub(super) fn hi(&self, axis: usize) -> f32 {
+        -self.0[4 + axis]
+    }
+
+    /// Twice the centre along an axis.
+    #[inline(always)]
+    pub(super) fn center2(&self, axis: usize) -> f32 {
+        self.0[axis] - self.0[4 + axis]
+    }
+
+    #[inline(always)]
+    pub(super) fn set_lo(&mut self, axis: usize, value: f32) {
+        self.0[axis] = value;
+    }
+
+    #[inline(always)]
+    pub(super) fn set_hi(&mut self, axis: usize, value: f32) {
+        self.0[4 + axis] = -value;
+    }
+
+    #[inline(always)]
+    pub(super) fn is_empty(&self) -> bool {
+        !(0..3).all(|axis| self.lo(axis) <= self.hi(axis))
+    }
+
+    /// Half the surface area; 0 for an empty box.
+    #[inline(always)]
+    pub(super) fn half_area(&self) -> f32 {
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let size = self.hi(axis) - self.lo(axis);
+            if size > 0.0 { size } else { 0.0 }
+        });
+        if self.is_empty() { 0.0 } else { x * y + y * z + z * x }
+    }
+}
