@@ -187,8 +187,12 @@ const PARALLEL: usize = 4096;
 const MIN_SPLIT: usize = 4;
 
 /// Spatial splits are tried where the boxes of the best object split overlap by more than this share of the root's
-/// area (Stich et al. 2009, §4.5).
-const MIN_OVERLAP: f32 = 1e-5;
+/// area (Stich et al. 2009, §4.5) ...
+const MIN_OVERLAP_OF_ROOT: f32 = 1e-5;
+
+/// ... and by more than this share of the node's own: halves the time of builds of fine meshes. Nodes and blocks per
+/// ray rise by at most 1 % on bunny and dragon; 0.4 costs 10 % of the blocks on Sponza.
+const MIN_OVERLAP_OF_NODE: f32 = 0.2;
 
 /// The split that was chosen.
 enum Split {
@@ -222,7 +226,8 @@ impl Builder<'_> {
             return (count > BLOCK).then_some(Split::Middle);
         }
         let object = object_split::find(self.options, cell.used(), bounds);
-        let spatial = self.wants_spatial(object.as_ref()).then(|| self.find_spatial(cell, bounds)).flatten();
+        let spatial =
+            self.wants_spatial(object.as_ref(), bounds.half_area()).then(|| self.find_spatial(cell, bounds)).flatten();
         let spatial_cost = spatial.as_ref().map_or(f32::INFINITY, |s| s.cost);
         // The kd tree takes object splits only where no plane helps and the leaf would be too large.
         let prefer_spatial = self.options.kind == TreeKind::Kd && spatial_cost < leaf_cost;
@@ -241,11 +246,13 @@ impl Builder<'_> {
         }
     }
 
-    fn wants_spatial(&self, object: Option<&ObjectSplit>) -> bool {
+    fn wants_spatial(&self, object: Option<&ObjectSplit>, area: f32) -> bool {
         match self.options.kind {
             TreeKind::None | TreeKind::Fast => false,
             TreeKind::Kd => true,
-            TreeKind::Best => object.is_none_or(|split| split.overlap > MIN_OVERLAP * self.root_area),
+            TreeKind::Best => object.is_none_or(|split| {
+                split.overlap > (MIN_OVERLAP_OF_ROOT * self.root_area).max(MIN_OVERLAP_OF_NODE * area)
+            }),
         }
     }
 
