@@ -125,7 +125,8 @@ mod tests {
 
     #[test]
     fn unnamed_floats_are_found() {
-        let text = "fn f() { a(1.5, 1e-4, 3f32, 2.0, 1.0_f32, 7, 0..3, x.0, 1.max(2), 0x1e3, 12_u32, 4., S { cost: 5.5 }); }";
+        let text =
+            "fn f() { a(1.5, 1e-4, 3f32, 2.0, 1.0_f32, 7, 0..3, x.0, 1.max(2), 0x1e3, 12_u32, 4., S { cost: 5.5 }); }";
         assert_eq!(offenders(text), ["1.5", "1e-4", "3f32", "4."]);
     }
 

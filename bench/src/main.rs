@@ -1,0 +1,46 @@
+//! Measures Whitted beside its peers: ray queries and builds beside Embree, pictures beside POV-Ray and Tachyon.
+//!
+//! Not shipped. Without a peer our own figures are printed alone.
+//!
+//! # Invariants
+//! * Figures of two sides are comparable only if they come from the same run: peers are interleaved with us.
+//! * Answers are compared in the same run: a fast wrong answer is no figure.
+
+mod contest;
+mod embree;
+mod machine;
+mod options;
+mod ours;
+mod packets;
+mod peer;
+mod ray_sets;
+mod rays;
+mod scenes;
+
+use clap::Parser;
+use std::error::Error;
+use std::process::ExitCode;
+
+/// Measures Whitted beside Embree, POV-Ray and Tachyon
+#[derive(Parser)]
+#[command(version)]
+enum Command {
+    /// Ray queries beside Embree
+    Rays(rays::Options),
+}
+
+fn main() -> ExitCode {
+    match run(Command::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Box<dyn Error>> {
+    match command {
+        Command::Rays(options) => rays::run(&options).map(drop),
+    }
+}
