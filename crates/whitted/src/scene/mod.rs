@@ -5,9 +5,10 @@
 
 mod camera;
 mod description;
+pub mod generate;
 mod light;
 mod settings;
 
-pub use camera::Camera;
+pub use camera::{Camera, CameraRays};
 pub use description::{Background, Light, LightKind, Mesh, NamedCamera, NamedMaterial, Scene};
 pub use settings::{Antialias, Sampling, Settings, Shadows, Tone};

@@ -7,7 +7,7 @@
 mod light;
 mod local;
 mod material;
-mod one;
+pub(crate) mod one;
 mod optics;
 mod prepared;
 mod texture;

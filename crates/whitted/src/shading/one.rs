@@ -4,22 +4,22 @@ use crate::math::{Vec3, Vec3f};
 use simd::{F32Lanes, Scalar, ScalarF32};
 
 /// A single number in the vocabulary of lanes.
-pub(super) type One = ScalarF32<1>;
+pub(crate) type One = ScalarF32<1>;
 
-pub(super) fn one(value: f32) -> One {
+pub(crate) fn one(value: f32) -> One {
     One::splat(Scalar, value)
 }
 
-pub(super) fn ones(vector: Vec3f) -> Vec3<One> {
+pub(crate) fn ones(vector: Vec3f) -> Vec3<One> {
     vector.map(one)
 }
 
-pub(super) fn value(one: One) -> f32 {
+pub(crate) fn value(one: One) -> f32 {
     let mut value = [0.0];
     one.store(&mut value);
     value[0]
 }
 
-pub(super) fn values(ones: Vec3<One>) -> Vec3f {
+pub(crate) fn values(ones: Vec3<One>) -> Vec3f {
     ones.map(value)
 }
