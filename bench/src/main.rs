@@ -6,6 +6,7 @@
 //! * Figures of two sides are comparable only if they come from the same run: peers are interleaved with us.
 //! * Answers are compared in the same run: a fast wrong answer is no figure.
 
+mod builds;
 mod contest;
 mod embree;
 mod machine;
@@ -27,6 +28,8 @@ use std::process::ExitCode;
 enum Command {
     /// Ray queries beside Embree
     Rays(rays::Options),
+    /// Tree builds beside Embree
+    Build(builds::Options),
 }
 
 fn main() -> ExitCode {
@@ -42,5 +45,6 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<(), Box<dyn Error>> {
     match command {
         Command::Rays(options) => rays::run(&options).map(drop),
+        Command::Build(options) => builds::run(&options).map(drop),
     }
 }

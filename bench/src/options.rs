@@ -3,6 +3,7 @@
 use crate::embree::{Embree, EmbreeError};
 use clap::{Args, ValueEnum};
 use simd::Level;
+use std::fmt;
 use std::path::PathBuf;
 use whitted::tree::{TreeKind, WalkKind};
 
@@ -64,6 +65,12 @@ pub(crate) enum TreeName {
     Fast,
     /// Spatial splits only
     Kd,
+}
+
+impl fmt::Display for TreeName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.to_possible_value().expect("no kind is hidden").get_name())
+    }
 }
 
 impl From<TreeName> for TreeKind {
