@@ -1,6 +1,7 @@
 //! Leaf blocks: primitives of one kind, eight at a time, as rows.
 
 use super::goal::Goal;
+use super::wide::on_huge_pages;
 use crate::geometry::sphere::{self, SphereRay};
 use crate::geometry::triangle::{self, renamed};
 use crate::geometry::{Primitives, ShearedRay};
@@ -75,6 +76,15 @@ impl Leaves {
                 LeafKind::Shapes => self.shapes[block].primitive,
             })
             .filter(|&id| id != NONE)
+    }
+
+    /// The same blocks on huge pages.
+    pub(super) fn on_huge_pages(self) -> Self {
+        Self {
+            triangles: on_huge_pages(self.triangles),
+            spheres: on_huge_pages(self.spheres),
+            shapes: on_huge_pages(self.shapes),
+        }
     }
 
     /// Bytes of all blocks.

@@ -198,6 +198,8 @@ impl Tree {
                 }
             }
         }
+        tree.nodes = on_huge_pages(tree.nodes);
+        tree.leaves = tree.leaves.on_huge_pages();
         tree.report.nodes = tree.nodes.len();
         tree.report.bytes = size_of_val(&tree.nodes[..]) + tree.leaves.bytes();
         tree
@@ -274,6 +276,14 @@ impl Tree {
         let first = self.leaves.push(primitives, self.scale, kind, &ids);
         Child::leaf(kind, first, ids.len().div_ceil(super::leaf::BLOCK))
     }
+}
+
+/// The same elements on huge pages: walks of large trees miss the translation buffers less.
+pub(super) fn on_huge_pages<T: Copy>(elements: Vec<T>) -> Vec<T> {
+    let mut moved = Vec::with_capacity(elements.len());
+    simd::advise_huge_pages(moved.spare_capacity_mut());
+    moved.extend_from_slice(&elements);
+    moved
 }
 
 /// The power of two that brings `max` into [1, 2), kept far from the ends of the exponent range.
