@@ -1,50 +1,75 @@
-//! The picture in memory.
+//! The light that samples have gathered, in a form that does not depend on the order in which it came.
 
-use crate::math::Vec3f;
-use crate::scene::{Settings, Tone};
+use crate::math::{Vec3, Vec3f};
 
-/// A picture: linear colours, row by row from the top left.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Image {
-    /// Pixels in a row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// `width · height` linear colours before exposure; finite.
-    pub pixels: Vec<Vec3f>,
+/// Light sums of a batch of samples, in 64-bit fixed point: integers add in any order to the same sum.
+///
+/// One unit is 2⁻³² of the light value 1; a single contribution counts as at most 2³⁰, a sum saturates at 2³¹. Negative
+/// and NaN contributions count as 0, so a film never holds anything that is not a finite number ≥ 0.
+#[derive(Debug, Default)]
+pub(super) struct Film {
+    sums: Vec<Vec3<i64>>,
 }
 
-impl Image {
-    /// A black picture.
-    pub fn new(width: u32, height: u32) -> Self {
-        Self { width, height, pixels: vec![Vec3f::ZERO; width as usize * height as usize] }
+/// Fixed-point units of the light value 1.
+const UNIT: f32 = (1u64 << 32) as f32;
+
+/// The largest contribution that is not cut.
+const BRIGHTEST: f32 = (1u32 << 30) as f32;
+
+impl Film {
+    /// Start over with `samples` black samples.
+    pub(super) fn reset(&mut self, samples: usize) {
+        self.sums.clear();
+        self.sums.resize(samples, Vec3::splat(0));
     }
 
-    /// Eight bits per component, RGB row by row, by the exposure and tone curve of `settings`.
-    pub fn to_rgb8(&self, settings: &Settings) -> Vec<u8> {
-        let gain = simd::math::exp2(settings.exposure);
-        self.pixels.iter().flat_map(|&color| encode(color * gain, settings.tone).to_array()).collect()
+    /// Add `light` to a sample.
+    ///
+    /// # Panics
+    /// If there is no such sample.
+    #[inline]
+    pub(super) fn add(&mut self, sample: u32, light: Vec3f) {
+        let sum = &mut self.sums[sample as usize];
+        // Saturation keeps the order free: all addends are ≥ 0, so the result is min(true sum, largest).
+        *sum = sum.zip(light.map(to_fixed), i64::saturating_add);
+    }
+
+    /// The light of every sample, in order; finite and ≥ 0.
+    pub(super) fn colors(&self) -> impl ExactSizeIterator<Item = Vec3f> {
+        self.sums.iter().map(|sum| sum.map(|a| (a as f64 / f64::from(UNIT)) as f32))
     }
 }
 
-/// One display colour from one linear colour; NaN gives 0.
-fn encode(color: Vec3f, tone: Tone) -> crate::math::Vec3<u8> {
-    let color = match tone {
-        Tone::Clamp | Tone::Linear => color,
-        Tone::Reinhard => {
-            // Luminance of linear sRGB (Rec. 709).
-            let luminance = color.dot(Vec3f::new(0.2126, 0.7152, 0.0722));
-            color / (1.0 + luminance)
-        }
-    };
-    let transfer = if tone == Tone::Linear { |a| a } else { srgb_transfer };
-    color.map(|a| {
-        let clamped = if a > 0.0 { a.min(1.0) } else { 0.0 };
-        (transfer(clamped) * 255.0 + 0.5) as u8
-    })
+fn to_fixed(light: f32) -> i64 {
+    // The comparison is false for NaN. The product is exact; the cast drops what is below one unit.
+    if light > 0.0 { (light.min(BRIGHTEST) * UNIT) as i64 } else { 0 }
 }
 
-/// The sRGB transfer function (IEC 61966-2-1) on [0, 1].
-fn srgb_transfer(a: f32) -> f32 {
-    if a <= 0.003_130_8 { a * 12.92 } else { 1.055 * simd::math::pow(a, 1.0 / 2.4) - 0.055 }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sum(lights: &[f32]) -> f32 {
+        let mut film = Film::default();
+        film.reset(1);
+        lights.iter().for_each(|&light| film.add(0, Vec3f::splat(light)));
+        film.colors().next().expect("one sample").x
+    }
+
+    #[test]
+    fn poison_counts_as_nothing_and_brightness_ends_somewhere() {
+        assert_eq!(sum(&[f32::NAN, -1.0, f32::NEG_INFINITY, 0.25, -0.0]), 0.25);
+        assert_eq!(sum(&[f32::INFINITY]), BRIGHTEST);
+        assert_eq!(sum(&[f32::MAX; 9]), 2.0 * BRIGHTEST);
+    }
+
+    #[test]
+    fn order_does_not_matter() {
+        let lights = [1e-9, 3.7, 1e9, f32::MAX, 0.1, 1e-3, f32::MAX, f32::MAX];
+        let mut reversed = lights;
+        reversed.reverse();
+        assert_eq!(sum(&lights).to_bits(), sum(&reversed).to_bits());
+        assert_eq!(sum(&lights[..3]).to_bits(), sum(&[3.7, 1e9, 1e-9]).to_bits());
+    }
 }

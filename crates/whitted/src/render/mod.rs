@@ -1,11 +1,37 @@
 //! Regions, batches, the generation loop, edge refinement and the film.
+//!
+//! The path of a pixel: [`frame`] divides the picture into regions; a [`workspace`] makes the camera rays of one;
+//! the [`wavefront`] (or its oracle, [`recursive`]) traces them and all that descends from them, making a [`vertex`]
+//! of each hit, [`scatter`]ing rays from it and asking for [`shadow`]s; the [`film`] sums the light of each sample;
+//! [`edges`] decides which pixels are sampled again.
 
+mod context;
+mod edges;
 mod execution;
 mod film;
+mod first_pass;
+mod frame;
+mod image;
+mod jitter;
+mod media;
+mod probe;
 mod progress;
+mod queue;
+mod recursive;
+mod region;
+mod samples;
+mod scatter;
+mod shadow;
 mod statistics;
+mod vertex;
+mod wavefront;
+mod workspace;
 
 pub use execution::{Execution, Method, Region};
-pub use film::Image;
-pub use progress::{Cancel, Progress, Silent};
+pub use first_pass::FirstSample;
+pub use frame::{Frame, render, render_rect};
+pub use image::Image;
+pub use probe::{Phase, Probe, Unwatched};
+pub use progress::{Cancel, Cancelled, Progress, Silent};
+pub use region::PixelRect;
 pub use statistics::Statistics;

@@ -16,7 +16,12 @@ impl Progress for Silent {
     fn regions_done(&self, _: u32, _: usize, _: usize) {}
 }
 
-/// A flag that stops a render within one region.
+/// The picture was not finished because its [`Cancel`] was set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the render was cancelled")]
+pub struct Cancelled;
+
+/// A flag that stops a render within one batch of rays per thread.
 #[derive(Debug, Default)]
 pub struct Cancel(AtomicBool);
 

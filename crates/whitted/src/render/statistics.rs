@@ -1,5 +1,6 @@
 //! What a render did, counted.
 
+use crate::tree::Counts;
 use std::ops::AddAssign;
 
 /// Counts of one render. Times and memory are the caller's to measure.
@@ -25,7 +26,9 @@ pub struct Statistics {
     pub cut_by_weight: u64,
     /// Secondary rays not traced because of the depth limit.
     pub cut_by_depth: u64,
-    /// Rays inside more nested media than are kept.
+    /// Secondary rays not traced because their sample had no rays left.
+    pub cut_by_budget: u64,
+    /// Refracted rays inside more nested media than are kept.
     pub media_overflows: u64,
 }
 
@@ -48,6 +51,14 @@ impl AddAssign for Statistics {
         self.supersampled_pixels += other.supersampled_pixels;
         self.cut_by_weight += other.cut_by_weight;
         self.cut_by_depth += other.cut_by_depth;
+        self.cut_by_budget += other.cut_by_budget;
         self.media_overflows += other.media_overflows;
+    }
+}
+
+impl AddAssign<Counts> for Statistics {
+    fn add_assign(&mut self, counts: Counts) {
+        self.primitive_tests += counts.primitive_tests;
+        self.node_steps += counts.node_steps;
     }
 }

@@ -4,11 +4,22 @@
 //! geometry with its tree, and the [`Look`] (materials, lights, camera), so that a changed colour rebuilds nothing.
 
 mod camera;
+mod check;
 mod description;
 pub mod generate;
+mod geometry;
 mod light;
+mod look;
+mod prepared;
 mod settings;
+mod space;
 
 pub use camera::{Camera, CameraRays};
+pub use check::SceneError;
 pub use description::{Background, Light, LightKind, Mesh, NamedCamera, NamedMaterial, Scene};
+pub use geometry::Geometry;
+pub use look::Look;
+pub(crate) use look::ShadowOrigin;
+pub use prepared::Prepared;
 pub use settings::{Antialias, Sampling, Settings, Shadows, Tone};
+pub use space::Space;

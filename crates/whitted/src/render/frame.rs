@@ -1,0 +1,167 @@
+//! A whole picture: all regions once, then the flagged pixels again.
+
+use super::context::Context;
+use super::edges::{EdgeRule, flagged};
+use super::execution::Execution;
+use super::first_pass::{FirstPass, FirstSample};
+use super::image::Image;
+use super::probe::{Probe, Unwatched};
+use super::progress::{Cancel, Cancelled, Progress};
+use super::region::PixelRect;
+use super::statistics::Statistics;
+use super::workspace::{Refined, Workspaces};
+use crate::scene::{Antialias, Prepared, Settings};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A rendered picture, or a rectangle of one.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// The part of the picture that this is.
+    pub rect: PixelRect,
+    /// Its pixels.
+    pub image: Image,
+    /// What the first sample of every pixel saw, row by row.
+    pub first: Vec<FirstSample>,
+    /// Whether a pixel got more than one sample, row by row: the paper's figure 4.
+    pub supersampled: Vec<bool>,
+    /// What was done for these pixels.
+    pub statistics: Statistics,
+    /// What was done for pixels around `rect`, only to know whether there are edges between them and it.
+    pub apron: Statistics,
+}
+
+/// Render the whole picture.
+///
+/// Runs in the current rayon pool: within `pool.install` with as many threads as `pool` has, elsewhere in rayon's
+/// global pool. The settings should have passed [`Settings::check`].
+///
+/// # Errors
+/// If `cancel` was set before the picture was finished.
+pub fn render(
+    prepared: &Prepared,
+    settings: &Settings,
+    execution: &Execution,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Frame, Cancelled> {
+    let whole = PixelRect::whole(settings.size);
+    render_rect(prepared, settings, execution, &whole, progress, cancel, &Unwatched)
+}
+
+/// Render the part of the picture that lies in `rect`, and tell `probe` what is being done.
+///
+/// The pixels are those of the whole picture.
+///
+/// # Errors
+/// If `cancel` was set before the picture was finished.
+pub fn render_rect<P: Probe>(
+    prepared: &Prepared,
+    settings: &Settings,
+    execution: &Execution,
+    rect: &PixelRect,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+    probe: &P,
+) -> Result<Frame, Cancelled> {
+    let rect = rect.intersection(&PixelRect::whole(settings.size));
+    let job = Job {
+        context: Context::new(prepared, settings, execution, cancel),
+        rule: EdgeRule::new(settings),
+        progress,
+        probe,
+        workspaces: Workspaces::default(),
+    };
+    let (pass, statistics, apron) = job.first_pass(&rect)?;
+    let mut frame = Frame::of(&pass, rect, statistics, apron);
+    if !job.rule.never() {
+        job.refine(&pass, &mut frame)?;
+    }
+    Ok(frame)
+}
+
+/// A render under way.
+struct Job<'a, P> {
+    context: Context<'a>,
+    rule: EdgeRule,
+    progress: &'a dyn Progress,
+    probe: &'a P,
+    workspaces: Workspaces,
+}
+
+impl<P: Probe> Job<'_, P> {
+    /// One sample of every pixel of `rect`, and of those around it if they matter. Returns counts for both.
+    fn first_pass(&self, rect: &PixelRect) -> Result<(FirstPass, Statistics, Statistics), Cancelled> {
+        let settings = self.context.settings;
+        let covered = match settings.antialias {
+            Antialias::Paper | Antialias::Edge => rect.with_apron(settings.size),
+            Antialias::Off | Antialias::Uniform(_) => *rect,
+        };
+        let kind = self.context.execution.region;
+        let around = rect.strips_to(&covered).into_iter().flat_map(|strip| strip.regions(kind));
+        let regions: Vec<PixelRect> = rect.regions(kind).into_iter().chain(around).collect();
+        let results = self.for_each(1, &regions, |workspace, region| {
+            let samples = workspace.first_samples(&self.context, region, self.probe)?;
+            Ok((samples, workspace.take_statistics()))
+        })?;
+        let mut pass = FirstPass::new(covered);
+        let (mut inside, mut apron) = (Statistics::default(), Statistics::default());
+        for (region, (samples, statistics)) in regions.iter().zip(results) {
+            pass.set(region, &samples);
+            if rect.contains([region.x, region.y]) {
+                inside += statistics;
+            } else {
+                apron += statistics;
+            }
+        }
+        Ok((pass, inside, apron))
+    }
+
+    /// More samples for the flagged pixels.
+    fn refine(&self, pass: &FirstPass, frame: &mut Frame) -> Result<(), Cancelled> {
+        let regions = frame.rect.regions(self.context.execution.region);
+        let results = self.for_each(2, &regions, |workspace, region| {
+            let pixels = flagged(&self.rule, pass, region);
+            let refined = workspace.refine(&self.context, pass, &pixels, self.probe)?;
+            Ok((refined, workspace.take_statistics()))
+        })?;
+        for (refined, statistics) in results {
+            frame.statistics += statistics;
+            frame.statistics.supersampled_pixels += refined.len() as u64;
+            for Refined { pixel, color } in refined {
+                let index = frame.rect.index(pixel);
+                frame.image.pixels[index] = color;
+                frame.supersampled[index] = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// Do `work` for every region in parallel; results in the order of the regions.
+    fn for_each<R: Send>(
+        &self,
+        phase: u32,
+        regions: &[PixelRect],
+        work: impl Fn(&mut super::workspace::Workspace, &PixelRect) -> Result<R, Cancelled> + Sync,
+    ) -> Result<Vec<R>, Cancelled> {
+        let done = AtomicUsize::new(0);
+        regions
+            .par_iter()
+            .map(|region| {
+                let result = self.workspaces.with(|workspace| work(workspace, region))?;
+                self.progress.regions_done(phase, done.fetch_add(1, Ordering::Relaxed) + 1, regions.len());
+                Ok(result)
+            })
+            .collect()
+    }
+}
+
+impl Frame {
+    /// The frame after the first pass.
+    fn of(pass: &FirstPass, rect: PixelRect, statistics: Statistics, apron: Statistics) -> Self {
+        let first: Vec<FirstSample> = rect.pixels().map(|pixel| *pass.get(pixel)).collect();
+        let pixels = first.iter().map(|sample| sample.color).collect();
+        let image = Image { width: rect.width, height: rect.height, pixels };
+        Self { rect, image, supersampled: vec![false; first.len()], first, statistics, apron }
+    }
+}

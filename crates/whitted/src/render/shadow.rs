@@ -1,0 +1,120 @@
+//! Light on its way from a lamp to a surface.
+
+use super::context::Context;
+use super::samples::Samples;
+use crate::math::Vec3f;
+use crate::ray::{HitBatch, Ray, RayBatch};
+use crate::scene::Shadows;
+use crate::tree::{BitSet, Occlusion, Scratch};
+
+/// A ray between a surface and a lamp, and the light that its sample gains if nothing is in between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ShadowRay {
+    pub(super) sample: u32,
+    pub(super) light: Vec3f,
+    pub(super) ray: Ray,
+}
+
+/// Light passes at most this many surfaces; what would pass more is lost. Bounds the work of a shadow ray.
+pub(super) const MAX_FILTERS: usize = 256;
+
+/// Where the walk over all hits of a ray begins.
+pub(super) const BEFORE_ALL: (f32, u32) = (f32::NEG_INFINITY, 0);
+
+/// The primitives that let no light pass; `None` if none does.
+pub(super) fn opaque_primitives<'a>(context: &Context<'a>) -> Option<&'a BitSet> {
+    match context.settings.shadows {
+        Shadows::Opaque => None,
+        Shadows::Filter => context.look.opaque(),
+    }
+}
+
+/// The shadow rays of a batch towards one light.
+#[derive(Debug, Default)]
+pub(super) struct ShadowBatch {
+    rays: RayBatch,
+    gains: Vec<(u32, Vec3f)>,
+    occlusion: Vec<Occlusion>,
+    filtered: FilteredBatch,
+}
+
+impl ShadowBatch {
+    pub(super) fn push(&mut self, shadow: &ShadowRay) {
+        self.rays.push(&shadow.ray);
+        self.gains.push((shadow.sample, shadow.light));
+    }
+
+    /// Trace the rays, add the light that arrives, and forget the rays.
+    pub(super) fn resolve(&mut self, context: &Context, scratch: &mut Scratch, samples: &mut Samples) {
+        if self.gains.is_empty() {
+            return;
+        }
+        samples.statistics.shadow_rays += self.gains.len() as u64;
+        let counts = context.query.occluded(&self.rays, opaque_primitives(context), &mut self.occlusion, scratch);
+        samples.statistics += counts;
+        for (index, &(sample, light)) in self.gains.iter().enumerate() {
+            match self.occlusion[index] {
+                Occlusion::Clear => samples.add(sample, light),
+                Occlusion::Filtered => self.filtered.push(&self.rays.get(index), sample, light),
+                Occlusion::Blocked => {}
+            }
+        }
+        self.filtered.resolve(context, scratch, samples);
+        self.rays.clear();
+        self.gains.clear();
+    }
+}
+
+/// Shadow rays that meet only transparent surfaces: each round finds the next surface of every ray that is left.
+#[derive(Debug, Default)]
+struct FilteredBatch {
+    rays: RayBatch,
+    gains: Vec<(u32, Vec3f)>,
+    after: Vec<(f32, u32)>,
+    hits: HitBatch,
+}
+
+impl FilteredBatch {
+    fn push(&mut self, ray: &Ray, sample: u32, light: Vec3f) {
+        self.rays.push(ray);
+        self.gains.push((sample, light));
+        self.after.push(BEFORE_ALL);
+    }
+
+    fn resolve(&mut self, context: &Context, scratch: &mut Scratch, samples: &mut Samples) {
+        for _ in 0..MAX_FILTERS {
+            if self.gains.is_empty() {
+                break;
+            }
+            let counts = context.query.next_hit(&self.rays, &mut self.after, &mut self.hits, scratch);
+            samples.statistics += counts;
+            self.filter(context, samples);
+        }
+        self.keep_first(0);
+    }
+
+    /// Reduce the light of every ray by the surface that it met; deliver that of rays which met nothing more, and keep
+    /// the others.
+    fn filter(&mut self, context: &Context, samples: &mut Samples) {
+        let mut kept = 0;
+        for index in 0..self.gains.len() {
+            let (sample, light) = self.gains[index];
+            let hit = self.hits.get(index);
+            if !hit.is_hit() {
+                samples.add(sample, light);
+                continue;
+            }
+            self.gains[kept] = (sample, light.times(context.filter(hit.primitive)));
+            self.after[kept] = self.after[index];
+            self.rays.copy_within(index, kept);
+            kept += 1;
+        }
+        self.keep_first(kept);
+    }
+
+    fn keep_first(&mut self, len: usize) {
+        self.rays.truncate(len);
+        self.gains.truncate(len);
+        self.after.truncate(len);
+    }
+}

@@ -1,0 +1,110 @@
+//! The renderer: batches of rays, generation by generation, without recursion.
+//!
+//! Rays wait in one queue for each generation. The deepest queue that is not empty is worked off first, a chunk at a
+//! time, so that at most two chunks for each generation and one more wait at any moment, however many rays a sample
+//! has.
+
+use super::context::Context;
+use super::probe::{Phase, Probe, watched};
+use super::progress::Cancelled;
+use super::queue::RayQueue;
+use super::samples::Samples;
+use super::shadow::ShadowBatch;
+use super::vertex::Vertex;
+use super::workspace::camera_tag;
+use crate::ray::{HitBatch, RayBatch};
+use crate::tree::Scratch;
+
+/// Rays that are traced and shaded together: enough to keep the walks' lists long, few enough for the second-level
+/// cache.
+pub(super) const CHUNK: usize = 4096;
+
+/// The memory of one thread.
+#[derive(Debug, Default)]
+pub(super) struct Wavefront {
+    queues: Vec<RayQueue>,
+    chunk: RayQueue,
+    hits: HitBatch,
+    vertices: Vec<Vertex>,
+    shadows: ShadowBatch,
+    scratch: Scratch,
+}
+
+impl Wavefront {
+    /// Trace the camera rays, one for each sample, and all that descends from them. The rays are consumed.
+    ///
+    /// # Errors
+    /// If the render was cancelled; the queues are then empty.
+    pub(super) fn run<P: Probe>(
+        &mut self,
+        context: &Context,
+        camera_rays: &mut RayBatch,
+        samples: &mut Samples,
+        probe: &P,
+    ) -> Result<(), Cancelled> {
+        self.begin(camera_rays);
+        while let Some(generation) = self.queues.iter().rposition(|queue| !queue.is_empty()) {
+            if context.cancel.is_cancelled() {
+                self.queues.iter_mut().for_each(RayQueue::clear);
+                return Err(Cancelled);
+            }
+            watched(probe, Phase::Queue, || self.queues[generation].take(CHUNK, &mut self.chunk));
+            watched(probe, Phase::Trace, || self.trace(context, samples));
+            watched(probe, Phase::Shade, || self.shade(context, generation, samples));
+            self.light(context, samples, probe);
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, camera_rays: &mut RayBatch) {
+        if self.queues.is_empty() {
+            self.queues.push(RayQueue::default());
+        }
+        let queue = &mut self.queues[0];
+        queue.tags.extend((0..camera_rays.len()).map(camera_tag));
+        std::mem::swap(&mut queue.rays, camera_rays);
+        camera_rays.clear();
+    }
+
+    fn trace(&mut self, context: &Context, samples: &mut Samples) {
+        let counts = context.query.closest_hit(&self.chunk.rays, &mut self.hits, &mut self.scratch);
+        samples.statistics += counts;
+    }
+
+    /// Make a vertex of each hit; add the light that needs no shadow ray; queue the next generation.
+    fn shade(&mut self, context: &Context, generation: usize, samples: &mut Samples) {
+        if self.queues.len() == generation + 1 {
+            self.queues.push(RayQueue::default());
+        }
+        let next = &mut self.queues[generation + 1];
+        self.vertices.clear();
+        for (index, tag) in self.chunk.tags.iter().enumerate() {
+            let (ray, hit) = (self.chunk.rays.get(index), self.hits.get(index));
+            if !hit.is_hit() {
+                samples.add(tag.sample, context.look.background(ray.direction).times(tag.weight));
+                continue;
+            }
+            let vertex = Vertex::new(context, &ray, &hit, tag);
+            if generation == 0 {
+                vertex.note_first(context, samples);
+            }
+            samples.add(tag.sample, vertex.ambient(context));
+            let scattered = vertex.scatter(context, generation as u32, samples);
+            for (ray, tag) in scattered.reflected.into_iter().chain(scattered.refracted) {
+                next.push(&ray, tag);
+            }
+            self.vertices.push(vertex);
+        }
+    }
+
+    /// Add the light of every lamp to every vertex, lamp by lamp.
+    fn light<P: Probe>(&mut self, context: &Context, samples: &mut Samples, probe: &P) {
+        for light in 0..context.look.light_count() {
+            watched(probe, Phase::Shade, || {
+                let rays = self.vertices.iter().filter_map(|vertex| vertex.toward(context, light));
+                rays.for_each(|ray| self.shadows.push(&ray));
+            });
+            watched(probe, Phase::Shadow, || self.shadows.resolve(context, &mut self.scratch, samples));
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! How everything looks: materials, lights, camera, background.
+
+use super::{Background, Camera, Geometry, Scene, SceneError, check};
+use crate::math::{Aabb, Vec3f};
+use crate::shading::{PreparedLight, PreparedMaterial};
+use crate::tree::BitSet;
+
+/// Where shadow rays start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ShadowOrigin {
+    /// At the light, the same point for all of them: coherent walks apply.
+    Light(Vec3f),
+    /// At the surface: the light is infinitely far, or so far that rays from it would be too coarse.
+    Surface,
+}
+
+/// Shadow rays do not start at a light that is farther from the scene than this many extents: the surface points at
+/// which they end would have to be moved by more than 2⁻¹² of the extent.
+const DISTANT: f32 = 64.0;
+
+/// The part of a prepared scene that can be changed without touching its [`Geometry`]; in internal space.
+#[derive(Clone, Debug)]
+pub struct Look {
+    materials: Vec<PreparedMaterial>,
+    lights: Vec<(PreparedLight, ShadowOrigin)>,
+    ambient: Vec3f,
+    background: Background,
+    camera: Camera,
+    /// Primitives that let no light pass; `None` if there are no others.
+    opaque: Option<BitSet>,
+}
+
+impl Look {
+    /// The look of a scene that has passed [`check::scene`].
+    pub(super) fn new(scene: &Scene, geometry: &Geometry) -> Result<Self, SceneError> {
+        check::material_indices(&geometry.materials, scene.materials.len())?;
+        let space = geometry.space();
+        let prepare = |material| PreparedMaterial::new(material, space.origin(), space.scale());
+        let materials: Vec<_> = scene.materials.iter().map(|named| prepare(&named.material)).collect();
+        let lights = scene.lights.iter().map(|light| {
+            let light = light.prepare(|point| space.point(point), space.scale());
+            (light, shadow_origin(&light, geometry.bounds()))
+        });
+        let camera = &scene.cameras.first().ok_or(SceneError::NoCamera)?.camera;
+        Ok(Self {
+            lights: lights.collect(),
+            ambient: scene.ambient,
+            background: scene.background,
+            camera: Camera { eye: space.point(camera.eye), look_at: space.point(camera.look_at), ..*camera },
+            opaque: opaque(geometry, &materials),
+            materials,
+        })
+    }
+
+    /// Material `index`, which must exist.
+    #[inline]
+    pub(crate) fn material(&self, index: u32) -> &PreparedMaterial {
+        &self.materials[index as usize]
+    }
+
+    pub(crate) fn light_count(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// Light `index`, which must exist.
+    pub(crate) fn light(&self, index: usize) -> (&PreparedLight, ShadowOrigin) {
+        let (light, origin) = &self.lights[index];
+        (light, *origin)
+    }
+
+    /// Light that reaches every point from everywhere.
+    pub(crate) fn ambient(&self) -> Vec3f {
+        self.ambient
+    }
+
+    /// Primitives that let no light pass; `None` if there are no others.
+    pub(crate) fn opaque(&self) -> Option<&BitSet> {
+        self.opaque.as_ref()
+    }
+
+    /// What a ray sees that hits nothing. `direction` need not be normalised.
+    pub(crate) fn background(&self, direction: Vec3f) -> Vec3f {
+        match self.background {
+            Background::Color(color) => color,
+            Background::Gradient { down, up } => {
+                let share = direction.y / direction.length() * 0.5 + 0.5;
+                down * (1.0 - share) + up * share
+            }
+        }
+    }
+
+    /// The camera, in internal space.
+    pub(crate) fn camera(&self) -> &Camera {
+        &self.camera
+    }
+}
+
+fn shadow_origin(light: &PreparedLight, scene: Aabb) -> ShadowOrigin {
+    let extent = scene.size().max_component().max(0.0);
+    match light.position() {
+        Some(position) if (position - scene.center()).abs().max_component() > DISTANT * extent => ShadowOrigin::Surface,
+        // Also where there is nothing bounded: NaN and infinities compare as false.
+        Some(position) => ShadowOrigin::Light(position),
+        None => ShadowOrigin::Surface,
+    }
+}
+
+fn opaque(geometry: &Geometry, materials: &[PreparedMaterial]) -> Option<BitSet> {
+    let is_opaque = |&material: &u32| !materials[material as usize].is_transparent();
+    let all = geometry.materials.iter().all(is_opaque);
+    (!all).then(|| geometry.materials.iter().map(is_opaque).collect())
+}

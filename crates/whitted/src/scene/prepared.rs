@@ -1,0 +1,51 @@
+//! A scene that has been checked and is ready to be rendered.
+
+use super::check;
+use super::{Geometry, Look, Scene, SceneError};
+use crate::tree::BuildOptions;
+use std::sync::Arc;
+
+/// A checked scene: geometry with its tree, and how it looks.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    geometry: Arc<Geometry>,
+    look: Look,
+}
+
+impl Prepared {
+    /// Check `scene`, move it to internal space, build the tree.
+    ///
+    /// # Errors
+    /// What [`SceneError`] lists.
+    pub fn new(scene: &Scene, options: &BuildOptions) -> Result<Self, SceneError> {
+        check::scene(scene)?;
+        let geometry = Geometry::new(scene, options)?;
+        let look = Look::new(scene, &geometry)?;
+        Ok(Self { geometry: Arc::new(geometry), look })
+    }
+
+    /// The same shapes with the materials, lights, first camera, ambient light and background of `scene`, whose shapes
+    /// must be those of the scene from which this one was prepared: nothing is rebuilt.
+    ///
+    /// # Errors
+    /// What [`SceneError`] lists; also if the number of primitives differs.
+    pub fn with_look_of(&self, scene: &Scene) -> Result<Self, SceneError> {
+        check::scene(scene)?;
+        let (expected, found) = (self.geometry.primitives().len(), scene.primitive_count());
+        if expected != found {
+            return Err(SceneError::OtherShapes { expected, found });
+        }
+        let look = Look::new(scene, &self.geometry)?;
+        Ok(Self { geometry: Arc::clone(&self.geometry), look })
+    }
+
+    /// The shapes and their tree.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// Materials, lights, camera, background.
+    pub fn look(&self) -> &Look {
+        &self.look
+    }
+}

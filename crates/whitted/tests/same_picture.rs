@@ -1,0 +1,138 @@
+//! A picture depends on the scene and its settings only: not on how it is computed.
+
+mod random_scene;
+
+use random_scene::random_scene;
+use whitted::render::{Cancel, Execution, Frame, Method, PixelRect, Region, Silent, Unwatched, render, render_rect};
+use whitted::scene::{Antialias, Prepared, Scene, Settings, Shadows};
+use whitted::tree::{BuildOptions, TreeKind, WalkKind};
+
+fn settings(seed: u64) -> Settings {
+    Settings {
+        size: [61, 47],
+        depth: 1 + (seed % 6) as u32,
+        min_weight: if seed.is_multiple_of(3) { 0.0 } else { 1.0 / 255.0 },
+        antialias: match seed % 4 {
+            0 => Antialias::Off,
+            1 => Antialias::Paper,
+            2 => Antialias::Edge,
+            _ => Antialias::Uniform(3),
+        },
+        antialias_max: 5,
+        shadows: if seed.is_multiple_of(5) { Shadows::Opaque } else { Shadows::Filter },
+        seed: seed as u32,
+        ..Settings::default()
+    }
+}
+
+fn prepare(scene: &Scene, kind: TreeKind) -> Prepared {
+    Prepared::new(scene, &BuildOptions { kind, ..BuildOptions::default() }).expect("a valid scene")
+}
+
+fn picture(prepared: &Prepared, settings: &Settings, execution: &Execution) -> Frame {
+    render(prepared, settings, execution, &Silent, &Cancel::new()).expect("not cancelled")
+}
+
+/// The bits of all pixels: equality of floats would let −0 pass for 0.
+fn bits(frame: &Frame) -> Vec<[u32; 3]> {
+    frame.image.pixels.iter().map(|p| p.to_array().map(f32::to_bits)).collect()
+}
+
+fn assert_same(expected: &Frame, found: &Frame, what: &str) {
+    let differing = bits(expected).iter().zip(bits(found)).filter(|(a, b)| **a != *b).count();
+    assert_eq!(differing, 0, "{differing} pixels differ: {what}");
+    assert_eq!(expected.supersampled, found.supersampled, "{what}");
+    assert_eq!(expected.first, found.first, "{what}");
+    let counts = |frame: &Frame| {
+        // How much work the tree does is exempt, and wavefronts test in blocks.
+        whitted::render::Statistics { primitive_tests: 0, node_steps: 0, ..frame.statistics }
+    };
+    assert_eq!(counts(expected), counts(found), "{what}");
+}
+
+#[test]
+fn wavefront_equals_recursion() {
+    for seed in 0..40 {
+        let (scene, settings) = (random_scene(seed), settings(seed));
+        let prepared = prepare(&scene, TreeKind::Best);
+        let expected = picture(&prepared, &settings, &Execution { method: Method::Recursive, ..Execution::default() });
+        assert!(expected.image.pixels.iter().all(|p| p.is_finite() && p.min_component() >= 0.0), "scene {seed}");
+        let found = picture(&prepared, &settings, &Execution::default());
+        assert_same(&expected, &found, &format!("scene {seed}"));
+    }
+}
+
+#[test]
+fn regions_do_not_matter() {
+    for seed in 40..48 {
+        let (scene, settings) = (random_scene(seed), settings(seed));
+        let prepared = prepare(&scene, TreeKind::Best);
+        let expected = picture(&prepared, &settings, &Execution::default());
+        let squares = [1, 2, 7, 16, 33, 128].map(|side| Region::Rectangle(side, side));
+        for region in squares.into_iter().chain([Region::Rectangle(61, 3), Region::Scanline, Region::Frame]) {
+            let found = picture(&prepared, &settings, &Execution { region, ..Execution::default() });
+            assert_same(&expected, &found, &format!("scene {seed}, {region:?}"));
+        }
+    }
+}
+
+#[test]
+fn threads_do_not_matter() {
+    for seed in 50..54 {
+        let (scene, settings) = (random_scene(seed), settings(seed));
+        let prepared = prepare(&scene, TreeKind::Best);
+        let execution = Execution { region: Region::Rectangle(8, 8), ..Execution::default() };
+        let mut frames = (1..=8).map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            pool.install(|| picture(&prepared, &settings, &execution))
+        });
+        let expected = frames.next().expect("eight frames");
+        frames.for_each(|found| assert_same(&expected, &found, &format!("scene {seed}")));
+    }
+}
+
+#[test]
+fn instruction_sets_walks_and_trees_do_not_matter() {
+    for seed in 60..80 {
+        let (scene, settings) = (random_scene(seed), settings(seed));
+        let prepared = prepare(&scene, TreeKind::None);
+        let expected = picture(&prepared, &settings, &Execution::default());
+        for kind in [TreeKind::Kd, TreeKind::Fast, TreeKind::Best] {
+            let prepared = prepare(&scene, kind);
+            for level in simd::Level::available() {
+                for walk in [WalkKind::Auto, WalkKind::Stream, WalkKind::Single] {
+                    let found = picture(&prepared, &settings, &Execution { level, walk, ..Execution::default() });
+                    assert_same(&expected, &found, &format!("scene {seed}, {kind:?}, {}, {walk:?}", level.name()));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_part_is_cut_from_the_whole() {
+    for seed in 80..90 {
+        let (scene, settings) = (random_scene(seed), settings(seed));
+        let prepared = prepare(&scene, TreeKind::Best);
+        let whole = picture(&prepared, &settings, &Execution::default());
+        let rect = PixelRect { x: 13, y: 9, width: 30, height: 22 };
+        let execution = Execution { region: Region::Rectangle(11, 11), ..Execution::default() };
+        let part = render_rect(&prepared, &settings, &execution, &rect, &Silent, &Cancel::new(), &Unwatched)
+            .expect("not cancelled");
+        for pixel in rect.pixels() {
+            let (there, here) = (whole.rect.index(pixel), rect.index(pixel));
+            assert_eq!(whole.image.pixels[there], part.image.pixels[here], "scene {seed}, pixel {pixel:?}");
+            assert_eq!(whole.supersampled[there], part.supersampled[here], "scene {seed}, pixel {pixel:?}");
+        }
+        let needs_apron = matches!(settings.antialias, Antialias::Paper | Antialias::Edge);
+        assert_eq!(part.apron.camera_rays, if needs_apron { 2 * (30 + 22) + 4 } else { 0 });
+    }
+}
+
+#[test]
+fn a_cancelled_render_stops() {
+    let cancel = Cancel::new();
+    cancel.cancel();
+    let prepared = prepare(&random_scene(1), TreeKind::Best);
+    assert!(render(&prepared, &settings(1), &Execution::default(), &Silent, &cancel).is_err());
+}
