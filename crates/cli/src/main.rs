@@ -1,2 +1,32 @@
-//! The `whitted` command.
-fn main() {}
+//! The command `whitted`: renders scenes and checks them.
+//!
+//! It knows arguments, files' final names, progress and reports. What a scene means is `formats`' to say, and how a
+//! picture is computed the library's.
+//!
+//! # Invariants
+//! * A picture is under its final name only when it is whole.
+//! * What could be known to fail before rendering fails before rendering.
+//! * Standard output carries only what was asked for (a picture, statistics); everything else goes to standard error.
+
+#![forbid(unsafe_code)]
+
+mod args;
+mod check;
+mod exit;
+mod interrupt;
+mod load;
+mod output;
+mod progress;
+mod render;
+mod report;
+mod settings;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    exit::finish(match args::Arguments::parse().command {
+        args::Command::Render(arguments) => render::run(&arguments),
+        args::Command::Check(arguments) => check::run(&arguments),
+    })
+}

@@ -1,0 +1,23 @@
+//! Reading a scene and telling the user what was odd about it.
+
+use crate::args::{SceneArguments, Verbosity};
+use crate::exit::Failure;
+use formats::{ErrorKind, LoadOptions, Loaded};
+
+/// Reads the scene; warnings go to standard error unless it shall be quiet.
+pub(crate) fn load(arguments: &SceneArguments, verbosity: &Verbosity) -> Result<Loaded, Failure> {
+    let options = LoadOptions { allow_outside: arguments.allow_outside, ..LoadOptions::default() };
+    let loaded = formats::load(&arguments.scene, &options).map_err(|error| blame(&error))?;
+    if !verbosity.quiet {
+        loaded.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    }
+    Ok(loaded)
+}
+
+/// Sorts a reader's error by who can help.
+fn blame(error: &formats::Error) -> Failure {
+    match error.kind() {
+        ErrorKind::Io => Failure::Io(error.to_string()),
+        _ => Failure::Scene(error.to_string()),
+    }
+}

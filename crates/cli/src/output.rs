@@ -1,0 +1,92 @@
+//! Where results go: checked before work begins, complete under their final name or not there at all.
+
+use crate::exit::Failure;
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// A checked destination.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Target {
+    /// Standard output.
+    Stdout,
+    /// A regular file, which need not exist yet, in a folder that does.
+    File(PathBuf),
+    /// Something that can only be written into as it is: a pipe or a device.
+    Special(PathBuf),
+}
+
+impl Target {
+    /// Checks that `path` (`-` for standard output) can be written, without leaving a trace.
+    pub(crate) fn check(path: &Path) -> Result<Self, Failure> {
+        if path == Path::new("-") {
+            return Ok(Self::Stdout);
+        }
+        let fails = |reason: String| Failure::Io(format!("cannot write '{}': {reason}", path.display()));
+        // A link is followed, so that its target is replaced and not the link.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        match fs::metadata(&path) {
+            Ok(found) if found.is_dir() => return Err(fails("it is a folder".to_owned())),
+            Ok(found) if !found.is_file() => return Ok(Self::Special(path)),
+            Ok(found) if found.permissions().readonly() => return Err(fails("it is read-only".to_owned())),
+            _ => {}
+        }
+        let folder = folder_of(&path);
+        if !folder.is_dir() {
+            return Err(fails(format!("there is no folder '{}'", folder.display())));
+        }
+        let temporary = temporary_beside(&path);
+        File::create_new(&temporary).and_then(|_| fs::remove_file(&temporary)).map_err(|e| fails(e.to_string()))?;
+        Ok(Self::File(path))
+    }
+
+    /// Writes everything: a file appears under its name only when whole and on disk.
+    pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
+        let written = match self {
+            Self::Stdout => write_all(io::stdout().lock(), bytes),
+            Self::Special(path) => File::options().write(true).open(path).and_then(|file| write_all(file, bytes)),
+            Self::File(path) => replace(path, bytes),
+        };
+        written.map_err(|error| Failure::Io(format!("cannot write {self}: {error}")))
+    }
+}
+
+impl std::fmt::Display for Target {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Stdout => write!(f, "standard output"),
+            Self::File(path) | Self::Special(path) => write!(f, "'{}'", path.display()),
+        }
+    }
+}
+
+fn write_all(mut writer: impl Write, bytes: &[u8]) -> io::Result<()> {
+    writer.write_all(bytes)?;
+    writer.flush()
+}
+
+/// Writes a temporary file in the same folder (renaming works only inside one file system), then renames it.
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let temporary = temporary_beside(path);
+    let result = File::create_new(&temporary)
+        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&temporary, path));
+    if result.is_err() {
+        // The first error is the one to report; a file that was never made cannot be removed.
+        let _ = fs::remove_file(&temporary);
+    }
+    result
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// A hidden name that no other running process uses.
+fn temporary_beside(path: &Path) -> PathBuf {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(format!(".{}.tmp", std::process::id()));
+    path.with_file_name(name)
+}

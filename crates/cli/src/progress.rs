@@ -1,0 +1,97 @@
+//! How far the render is: a bar on a terminal, a plain line now and then elsewhere, nothing when quiet.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+use whitted::render::Progress;
+
+/// Plain lines come this far apart, and none before this much time has passed.
+const LINE_INTERVAL: Duration = Duration::from_secs(2);
+
+/// A sink for the renderer that shows progress on standard error.
+pub(crate) enum Display {
+    Quiet,
+    Lines(Mutex<Ticker>),
+    Bar(ProgressBar),
+}
+
+impl Display {
+    /// The display that suits standard error.
+    pub(crate) fn new(quiet: bool) -> Self {
+        match (quiet, std::io::stderr().is_terminal()) {
+            (true, _) => Self::Quiet,
+            (false, false) => Self::Lines(Mutex::new(Ticker { last: Instant::now() })),
+            (false, true) => Self::Bar(bar()),
+        }
+    }
+
+    /// Removes the bar, so that what is printed next stands alone.
+    pub(crate) fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg:15} {bar:40} {percent:>3} %  {elapsed} of about {duration}");
+    let style = style.expect("the template is well-formed");
+    let draw = ProgressDrawTarget::stderr_with_hz(10);
+    ProgressBar::with_draw_target(Some(1), draw).with_style(style)
+}
+
+impl Progress for Display {
+    fn regions_done(&self, phase: u32, done: usize, total: usize) {
+        match self {
+            Self::Quiet => {}
+            Self::Lines(ticker) => {
+                // A poisoned ticker only means that another thread panicked while printing.
+                let Ok(mut ticker) = ticker.lock() else { return };
+                if ticker.is_due(Instant::now()) {
+                    eprintln!("{} {} %", phase_name(phase), 100 * done / total.max(1));
+                }
+            }
+            Self::Bar(bar) => {
+                bar.set_message(phase_name(phase));
+                bar.set_length(total as u64);
+                bar.set_position(done as u64);
+            }
+        }
+    }
+}
+
+fn phase_name(phase: u32) -> &'static str {
+    if phase <= 1 { "tracing" } else { "refining edges" }
+}
+
+/// Says when the next line is due.
+pub(crate) struct Ticker {
+    last: Instant,
+}
+
+impl Ticker {
+    fn is_due(&mut self, now: Instant) -> bool {
+        let due = now.duration_since(self.last) >= LINE_INTERVAL;
+        if due {
+            self.last = now;
+        }
+        due
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_keep_their_distance() {
+        let start = Instant::now();
+        let mut ticker = Ticker { last: start };
+        let due_at = |ticker: &mut Ticker, seconds| ticker.is_due(start + Duration::from_secs(seconds));
+        assert!(!due_at(&mut ticker, 1));
+        assert!(due_at(&mut ticker, 2));
+        assert!(!due_at(&mut ticker, 3));
+        assert!(due_at(&mut ticker, 5));
+    }
+}

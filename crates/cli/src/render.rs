@@ -1,0 +1,144 @@
+//! `whitted render`: check, load, build, trace, write, report.
+
+use crate::args::{RenderArguments, Stats};
+use crate::check::contents;
+use crate::exit::Failure;
+use crate::interrupt;
+use crate::load::load;
+use crate::output::Target;
+use crate::progress::Display;
+use crate::report::Report;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use whitted::render::{Cancel, Frame, PixelRect, Unwatched, render_rect};
+use whitted::scene::{Prepared, Scene};
+use whitted::tree::BuildOptions;
+
+pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
+    arguments.picture.check()?;
+    let outputs = Outputs::check(arguments)?;
+    let pool = arguments.execution.pool()?;
+    let cancel = interrupt::install();
+    let mut report = Report::default();
+
+    let scene = timed(&mut report.load, || scene(arguments))?;
+    let rectangle = arguments.picture.rectangle(scene.settings.size)?;
+    stop_if(cancel)?;
+    let prepared = timed(&mut report.build, || pool.install(|| build(&scene, arguments)))?;
+    stop_if(cancel)?;
+    tell_details(arguments, &scene, &prepared, pool.current_num_threads());
+    let frame = timed(&mut report.trace, || pool.install(|| trace(&prepared, rectangle, &scene, arguments, cancel)))?;
+    report.statistics = frame.statistics;
+    report.tree = prepared.geometry().tree().report();
+    timed(&mut report.write, || write(&frame, &scene, &outputs.picture, cancel))?;
+    tell_summary(arguments, &outputs.picture, rectangle, &report);
+    outputs.write_stats(&report)
+}
+
+/// Where everything goes, checked.
+struct Outputs {
+    picture: Target,
+    stats: Option<(Stats, Target)>,
+}
+
+impl Outputs {
+    fn check(arguments: &RenderArguments) -> Result<Self, Failure> {
+        let path = arguments.output.clone().unwrap_or_else(|| default_output(arguments));
+        let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+        if !is_png && path.as_os_str() != "-" {
+            let text = format!("cannot write '{}': the format must be one of: .png", path.display());
+            return Err(Failure::Usage(text));
+        }
+        let picture = Target::check(&path)?;
+        let stats = arguments.stats.clone().map(|stats| {
+            let target = Target::check(&stats.file.clone().unwrap_or_else(|| PathBuf::from("-")))?;
+            if target == picture {
+                let text = format!("the picture and the statistics cannot both go to the same file, {picture}");
+                return Err(Failure::Usage(text));
+            }
+            Ok((stats, target))
+        });
+        Ok(Self { picture, stats: stats.transpose()? })
+    }
+
+    fn write_stats(&self, report: &Report) -> Result<(), Failure> {
+        let Some((stats, target)) = &self.stats else { return Ok(()) };
+        target.write(report.render(stats.format).as_bytes())
+    }
+}
+
+/// The scene's name with `.png`, in the current folder.
+fn default_output(arguments: &RenderArguments) -> PathBuf {
+    PathBuf::from(arguments.scene.scene.file_name().unwrap_or_default()).with_extension("png")
+}
+
+fn scene(arguments: &RenderArguments) -> Result<Scene, Failure> {
+    let mut scene = load(&arguments.scene, &arguments.verbosity)?.scene;
+    arguments.picture.choose_camera(&mut scene)?;
+    scene.settings = arguments.picture.over(scene.settings);
+    Ok(scene)
+}
+
+fn build(scene: &Scene, arguments: &RenderArguments) -> Result<Prepared, Failure> {
+    let options = BuildOptions { kind: arguments.execution.tree.unwrap_or_default(), ..BuildOptions::default() };
+    let prepared = Prepared::new(scene, &options);
+    prepared.map_err(|error| Failure::Scene(format!("{}: {error}", arguments.scene.scene.display())))
+}
+
+fn trace(
+    prepared: &Prepared,
+    rectangle: PixelRect,
+    scene: &Scene,
+    arguments: &RenderArguments,
+    cancel: &Cancel,
+) -> Result<Frame, Failure> {
+    let display = Display::new(arguments.verbosity.quiet);
+    let execution = arguments.execution.execution();
+    let frame = render_rect(prepared, &scene.settings, &execution, &rectangle, &display, cancel, &Unwatched);
+    display.finish();
+    frame.map_err(|_cancelled| Failure::Interrupted)
+}
+
+fn write(frame: &Frame, scene: &Scene, target: &Target, cancel: &Cancel) -> Result<(), Failure> {
+    let rgb8 = frame.image.to_rgb8(&scene.settings);
+    let png = formats::png::encode(frame.image.width, frame.image.height, &rgb8);
+    let png = png.map_err(|error| Failure::Io(error.to_string()))?;
+    stop_if(cancel)?;
+    target.write(&png)
+}
+
+fn stop_if(cancel: &Cancel) -> Result<(), Failure> {
+    if cancel.is_cancelled() { Err(Failure::Interrupted) } else { Ok(()) }
+}
+
+fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    *duration = start.elapsed();
+    result
+}
+
+fn tell_details(arguments: &RenderArguments, scene: &Scene, prepared: &Prepared, threads: usize) {
+    if !arguments.verbosity.verbose {
+        return;
+    }
+    let level = arguments.execution.execution().level.name();
+    eprintln!("{}: {}", arguments.scene.scene.display(), contents(scene));
+    eprintln!("{threads} threads, {level}");
+    if prepared.geometry().dropped() > 0 {
+        eprintln!("{} degenerate primitives can never be hit", prepared.geometry().dropped());
+    }
+}
+
+fn tell_summary(arguments: &RenderArguments, picture: &Target, rectangle: PixelRect, report: &Report) {
+    if arguments.verbosity.quiet {
+        return;
+    }
+    let PixelRect { width, height, .. } = rectangle;
+    let total = report.load + report.build + report.trace + report.write;
+    let [load, build, trace, write, total] =
+        [report.load, report.build, report.trace, report.write, total].map(|time| time.as_secs_f64());
+    eprintln!(
+        "wrote {picture}, {width}x{height}, in {total:.2} s (load {load:.2}, build {build:.2}, trace {trace:.2}, write {write:.2})"
+    );
+}
