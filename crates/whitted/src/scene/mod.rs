@@ -3,6 +3,7 @@
 //! [`Scene`] has no invariants beyond its types: readers fill it, people edit it. [`Prepared`] is checked and immutable:
 //! geometry with its tree, and the [`Look`] (materials, lights, camera), so that a changed colour rebuilds nothing.
 
+mod auto;
 mod camera;
 mod check;
 mod description;
@@ -14,6 +15,7 @@ mod prepared;
 mod settings;
 mod space;
 
+pub use auto::clay;
 pub use camera::{Camera, CameraRays};
 pub use check::SceneError;
 pub use description::{Background, Light, LightKind, Mesh, NamedCamera, NamedMaterial, Scene};
