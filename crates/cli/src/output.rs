@@ -7,9 +7,15 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// A checked destination.
+#[derive(Clone, Debug)]
+pub(crate) struct Target {
+    place: Place,
+    /// As the user named it.
+    name: String,
+}
+
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Target {
-    /// Standard output.
+enum Place {
     Stdout,
     /// A regular file, which need not exist yet, in a folder that does.
     File(PathBuf),
@@ -21,43 +27,54 @@ impl Target {
     /// Checks that `path` (`-` for standard output) can be written, without leaving a trace.
     pub(crate) fn check(path: &Path) -> Result<Self, Failure> {
         if path == Path::new("-") {
-            return Ok(Self::Stdout);
+            return Ok(Self { place: Place::Stdout, name: "standard output".to_owned() });
         }
-        let fails = |reason: String| Failure::Io(format!("cannot write '{}': {reason}", path.display()));
-        // A link is followed, so that its target is replaced and not the link.
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        match fs::metadata(&path) {
-            Ok(found) if found.is_dir() => return Err(fails("it is a folder".to_owned())),
-            Ok(found) if !found.is_file() => return Ok(Self::Special(path)),
-            Ok(found) if found.permissions().readonly() => return Err(fails("it is read-only".to_owned())),
-            _ => {}
+        let name = format!("'{}'", path.display());
+        match Place::check(path) {
+            Ok(place) => Ok(Self { place, name }),
+            Err(reason) => Err(Failure::Io(format!("cannot write {name}: {reason}"))),
         }
-        let folder = folder_of(&path);
-        if !folder.is_dir() {
-            return Err(fails(format!("there is no folder '{}'", folder.display())));
-        }
-        let temporary = temporary_beside(&path);
-        File::create_new(&temporary).and_then(|_| fs::remove_file(&temporary)).map_err(|e| fails(e.to_string()))?;
-        Ok(Self::File(path))
+    }
+
+    /// Whether both lead to the same place.
+    pub(crate) fn is_same_as(&self, other: &Self) -> bool {
+        self.place == other.place
     }
 
     /// Writes everything: a file appears under its name only when whole and on disk.
     pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
-        let written = match self {
-            Self::Stdout => write_all(io::stdout().lock(), bytes),
-            Self::Special(path) => File::options().write(true).open(path).and_then(|file| write_all(file, bytes)),
-            Self::File(path) => replace(path, bytes),
+        let written = match &self.place {
+            Place::Stdout => write_all(io::stdout().lock(), bytes),
+            Place::Special(path) => File::options().write(true).open(path).and_then(|file| write_all(file, bytes)),
+            Place::File(path) => replace(path, bytes),
         };
         written.map_err(|error| Failure::Io(format!("cannot write {self}: {error}")))
     }
 }
 
+impl Place {
+    /// What `path` names, or why it cannot be written.
+    fn check(path: &Path) -> Result<Self, String> {
+        let path = resolved(path);
+        match fs::metadata(&path) {
+            Ok(found) if found.is_dir() => return Err("it is a folder".to_owned()),
+            Ok(found) if !found.is_file() => return Ok(Self::Special(path)),
+            Ok(found) if found.permissions().readonly() => return Err("it is read-only".to_owned()),
+            _ => {}
+        }
+        let folder = folder_of(&path);
+        if !folder.is_dir() {
+            return Err(format!("there is no folder '{}'", folder.display()));
+        }
+        let temporary = temporary_beside(&path);
+        File::create_new(&temporary).and_then(|_| fs::remove_file(&temporary)).map_err(|error| error.to_string())?;
+        Ok(Self::File(path))
+    }
+}
+
 impl std::fmt::Display for Target {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Stdout => write!(f, "standard output"),
-            Self::File(path) | Self::Special(path) => write!(f, "'{}'", path.display()),
-        }
+        f.write_str(&self.name)
     }
 }
 
@@ -77,6 +94,12 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         let _ = fs::remove_file(&temporary);
     }
     result
+}
+
+/// The path without links, so that a link's target is replaced and not the link, and one file has one name.
+fn resolved(path: &Path) -> PathBuf {
+    let in_folder = || Ok(fs::canonicalize(folder_of(path))?.join(path.file_name().unwrap_or_default()));
+    fs::canonicalize(path).or_else(|_: io::Error| in_folder()).unwrap_or_else(|_: io::Error| path.to_owned())
 }
 
 fn folder_of(path: &Path) -> &Path {

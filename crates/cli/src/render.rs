@@ -52,7 +52,7 @@ impl Outputs {
         let picture = Target::check(&path)?;
         let stats = arguments.stats.clone().map(|stats| {
             let target = Target::check(&stats.file.clone().unwrap_or_else(|| PathBuf::from("-")))?;
-            if target == picture {
+            if target.is_same_as(&picture) {
                 let text = format!("the picture and the statistics cannot both go to the same file, {picture}");
                 return Err(Failure::Usage(text));
             }

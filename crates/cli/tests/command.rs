@@ -85,7 +85,7 @@ fn wrong_usage_is_2_and_says_what_was_expected() {
         (&["render", "scene.nff", "-o", "a.bmp"], ".png"),
         (&["render", "scene.nff", "-o", "noextension"], ".png"),
         (&["render", "scene.nff", "-o", "-", "--stats", "json"], "standard output"),
-        (&["render", "scene.nff", "-o", "a.png", "--stats", "json=a.png"], "same file"),
+        (&["render", "scene.nff", "-o", "a.png", "--stats", "json=./a.png"], "same file"),
         (&["render", "scene.nff", "--crop", "40,0,9x1"], "48x32"),
         (&["render", "scene.nff", "--camera", "front"], "front"),
     ] {

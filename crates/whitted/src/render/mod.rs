@@ -1,9 +1,9 @@
 //! Regions, batches, the generation loop, edge refinement and the film.
 //!
-//! The path of a pixel: [`frame`] divides the picture into regions; a [`workspace`] makes the camera rays of one;
-//! the [`wavefront`] (or its oracle, [`recursive`]) traces them and all that descends from them, making a [`vertex`]
-//! of each hit, [`scatter`]ing rays from it and asking for [`shadow`]s; the [`film`] sums the light of each sample;
-//! [`edges`] decides which pixels are sampled again.
+//! The path of a pixel: `frame` divides the picture into regions; a `workspace` makes the camera rays of one;
+//! the `wavefront` (or its oracle, `recursive`) traces them and all that descends from them, making a `vertex`
+//! of each hit, scattering rays from it and asking for `shadow`s; the `film` sums the light of each sample;
+//! `edges` decides which pixels are sampled again.
 
 mod context;
 mod edges;
