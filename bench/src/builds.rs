@@ -32,11 +32,21 @@ pub(crate) struct Options {
     #[command(flatten)]
     ours: OurOptions,
     /// Rounds, of which the median counts
-    #[arg(long, default_value_t = 3)]
+    #[arg(long, default_value_t = ROUNDS)]
     rounds: usize,
     /// Write the rows to this file as well
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+}
+
+const ROUNDS: usize = 3;
+
+impl Options {
+    /// Everything.
+    pub(crate) fn new(embree: &EmbreeOptions, scenes: &SceneOptions, ours: &OurOptions) -> Self {
+        let (embree, scenes, ours) = (embree.clone(), scenes.clone(), ours.clone());
+        Self { embree, scenes, ours, rounds: ROUNDS, json: None }
+    }
 }
 
 /// Numbers of threads to build with.

@@ -14,8 +14,10 @@ mod options;
 mod ours;
 mod packets;
 mod peer;
+mod pictures;
 mod ray_sets;
 mod rays;
+mod record;
 mod scenes;
 
 use clap::Parser;
@@ -30,6 +32,10 @@ enum Command {
     Rays(rays::Options),
     /// Tree builds beside Embree
     Build(builds::Options),
+    /// Whole renders beside POV-Ray and Tachyon
+    Pictures(pictures::Options),
+    /// All of it, kept in bench/record
+    Record(record::Options),
 }
 
 fn main() -> ExitCode {
@@ -46,5 +52,7 @@ fn run(command: Command) -> Result<(), Box<dyn Error>> {
     match command {
         Command::Rays(options) => rays::run(&options).map(drop),
         Command::Build(options) => builds::run(&options).map(drop),
+        Command::Pictures(options) => pictures::run(&options).map(drop),
+        Command::Record(options) => record::run(&options),
     }
 }

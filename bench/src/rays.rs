@@ -37,7 +37,7 @@ pub(crate) struct Options {
     #[arg(long = "batch", value_parser = ["all", "4096", "1024", "64"], value_name = "SIZE", num_args = 1..)]
     batches: Vec<String>,
     /// Timed passes, of which the median counts
-    #[arg(long, default_value_t = 7)]
+    #[arg(long, default_value_t = PASSES)]
     passes: usize,
     /// Use at most this many rays of each set
     #[arg(long, value_name = "N")]
@@ -47,7 +47,22 @@ pub(crate) struct Options {
     json: Option<PathBuf>,
 }
 
+/// Timed passes unless another number is asked for.
+pub(crate) const PASSES: usize = 7;
+
 impl Options {
+    /// Everything.
+    pub(crate) fn new(
+        embree: &EmbreeOptions,
+        scenes: &SceneOptions,
+        ours: &OurOptions,
+        passes: usize,
+        max_rays: Option<usize>,
+    ) -> Self {
+        let (embree, scenes, ours) = (embree.clone(), scenes.clone(), ours.clone());
+        Self { embree, scenes, ours, kinds: Vec::new(), batches: Vec::new(), passes, max_rays, json: None }
+    }
+
     fn wants(&self, batch: &str) -> bool {
         self.batches.is_empty() || self.batches.iter().any(|wanted| wanted == batch)
     }
