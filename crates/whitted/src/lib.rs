@@ -20,3 +20,8 @@ pub mod render;
 pub mod scene;
 pub mod shading;
 pub mod tree;
+
+/// The README's example is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
