@@ -69,13 +69,15 @@ impl<'a> Context<'a> {
 
     /// Read the file `name` that the file `namer` names, relative to the folder of `namer`. Gives its path too.
     pub(crate) fn read_named(&mut self, namer: &Path, name: &str) -> Result<(PathBuf, Vec<u8>), Error> {
-        // Scenes and material libraries written on Windows name their files with backslashes.
-        let relative = PathBuf::from(name.replace('\\', "/"));
-        let folder = namer.parent().unwrap_or(Path::new(""));
-        let path = self.find(folder, &relative)?;
-        let shown = folder.join(&relative);
+        let path = self.find(folder_of(namer), &portable(name))?;
+        let shown = self.path_named(namer, name);
         let bytes = self.read(&path, &shown)?;
         Ok((shown, bytes))
+    }
+
+    /// The path of the file `name` that the file `namer` names, whether it may be read or not.
+    pub(crate) fn path_named(&self, namer: &Path, name: &str) -> PathBuf {
+        folder_of(namer).join(portable(name))
     }
 
     /// Count `bytes` that are used once more without being read again.
@@ -153,6 +155,15 @@ impl<'a> Context<'a> {
         }
         warnings
     }
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new(""))
+}
+
+/// A file's name as this system writes it: scenes and material libraries written on Windows use backslashes.
+fn portable(name: &str) -> PathBuf {
+    PathBuf::from(name.replace('\\', "/"))
 }
 
 /// True if `relative`, followed from `folder`, begins elsewhere or climbs above `root` by `..` alone.

@@ -3,6 +3,8 @@
 //! # What this crate knows
 //! | extension | what | read by |
 //! | --- | --- | --- |
+//! | `.toml` | scene (the native format, `docs/scene-format.md`) | [`load`] |
+//! | `.json` | scene (the same in JSON) | [`load`] |
 //! | `.nff` | scene (Haines' Neutral File Format) | [`load`] |
 //! | `.obj` | mesh with materials (Wavefront OBJ and MTL) | [`load`] |
 //! | `.ply` | mesh | [`load`] |
@@ -26,6 +28,7 @@ mod obj;
 mod ply;
 pub mod png;
 mod polygon;
+mod scene;
 mod source;
 mod suggest;
 mod text;
@@ -56,6 +59,10 @@ pub struct Loaded {
 /// A file format that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
+    /// A scene in the native format.
+    Toml,
+    /// A scene in the native format, written in JSON.
+    Json,
     /// A scene of Haines' Neutral File Format.
     Nff,
     /// A mesh of Wavefront's object format.
@@ -66,7 +73,8 @@ pub enum Format {
 
 impl Format {
     /// All formats with their extensions.
-    pub const ALL: [(&'static str, Self); 3] = [("nff", Self::Nff), ("obj", Self::Obj), ("ply", Self::Ply)];
+    pub const ALL: [(&'static str, Self); 5] =
+        [("toml", Self::Toml), ("json", Self::Json), ("nff", Self::Nff), ("obj", Self::Obj), ("ply", Self::Ply)];
 
     /// The format of the file `path` by its extension, in any case of letters.
     pub fn of(path: &Path) -> Result<Self, Error> {
@@ -80,6 +88,11 @@ impl Format {
             };
             Error::new(ErrorKind::Unsupported, path, what).hint(format!("known here: {known}"))
         })
+    }
+
+    /// True if files of the format hold a mesh and nothing else.
+    pub fn is_mesh(self) -> bool {
+        matches!(self, Self::Obj | Self::Ply)
     }
 }
 
@@ -104,30 +117,50 @@ pub fn parse(format: Format, name: &Path, bytes: Vec<u8>, options: &LoadOptions)
 }
 
 fn read(format: Format, file: &Path, bytes: Vec<u8>, mut context: Context<'_>) -> Result<Loaded, Error> {
-    // Only PLY may be binary.
-    let bytes = if format == Format::Ply { bytes } else { source::decode(file, bytes)? };
-    let options = context.options;
-    let source = Source { file, bytes: &bytes };
     let scene = match format {
-        Format::Nff => nff::read(source, options, &mut |w| context.warn(w))?,
-        Format::Obj => bare_mesh(obj::read(source, &mut context)?, source, &mut context),
-        Format::Ply => {
-            let mesh = ply::read(source, &mut |w| context.warn(w))?;
-            bare_mesh(MeshFile { mesh, materials: Vec::new() }, source, &mut context)
+        Format::Toml => scene::read_toml(Source { file, bytes: &source::decode(file, bytes)? }, &mut context)?,
+        Format::Json => scene::read_json(Source { file, bytes: &source::decode(file, bytes)? }, &mut context)?,
+        Format::Nff => {
+            let source = Source { file, bytes: &source::decode(file, bytes)? };
+            let options = context.options;
+            nff::read(source, options, &mut |w| context.warn(w))?
+        }
+        Format::Obj | Format::Ply => {
+            let mesh = read_mesh(format, file, bytes, &mut context)?;
+            bare_mesh(mesh, file)
         }
     };
     Ok(Loaded { scene, warnings: context.take_warnings(file), files: context.files })
 }
 
-/// A scene that holds nothing but a mesh.
-fn bare_mesh(file: MeshFile, source: Source<'_>, context: &mut Context<'_>) -> Scene {
-    let MeshFile { mut mesh, mut materials } = file;
-    mesh.name = source.file.to_string_lossy().into_owned();
-    if mesh.triangles.is_empty() {
-        context.warn(source.error_whole("there is nothing to draw: the mesh has no triangles").into_warning());
+/// Read a file of a [mesh format](Format::is_mesh).
+fn read_mesh(format: Format, file: &Path, bytes: Vec<u8>, context: &mut Context<'_>) -> Result<MeshFile, Error> {
+    let mesh = match format {
+        Format::Ply => {
+            let mesh = ply::read(Source { file, bytes: &bytes }, &mut |w| context.warn(w))?;
+            MeshFile { mesh, materials: Vec::new() }
+        }
+        _ => obj::read(Source { file, bytes: &source::decode(file, bytes)? }, context)?,
+    };
+    if mesh.mesh.triangles.is_empty() {
+        let what = "there is nothing to draw: the mesh has no triangles";
+        context.warn(Error::new(ErrorKind::Input, file, what).into_warning());
     }
+    Ok(mesh)
+}
+
+/// A scene that holds nothing but a mesh.
+fn bare_mesh(file: MeshFile, path: &Path) -> Scene {
+    let MeshFile { mut mesh, mut materials } = file;
+    mesh.name = path.to_string_lossy().into_owned();
     if materials.is_empty() {
         materials.push(NamedMaterial { name: "default".to_owned(), material: Material::default() });
     }
     Scene { meshes: vec![mesh], materials, ..Scene::default() }
+}
+
+/// The JSON Schema of the native format, as `docs/scene.schema.json` holds it.
+#[cfg(feature = "schema")]
+pub fn scene_schema() -> String {
+    format!("{:#}\n", scene::schema())
 }

@@ -105,6 +105,14 @@ pub(crate) fn decode(file: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     }
 }
 
+/// `source` as text.
+pub(crate) fn utf8<'a>(source: &Source<'a>) -> Result<&'a str, Error> {
+    std::str::from_utf8(source.bytes).map_err(|e| {
+        let at = e.valid_up_to();
+        source.error(at..at + 1, "the text is not UTF-8")
+    })
+}
+
 /// A word as text, with anything that is not UTF-8 replaced.
 pub(crate) fn lossy(word: &[u8]) -> Cow<'_, str> {
     String::from_utf8_lossy(word)

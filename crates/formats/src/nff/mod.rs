@@ -127,8 +127,8 @@ impl<'a> Reader<'a, '_> {
             return Err(self.scan.source.error_at(begin, "a view needs \"from\", \"at\", \"up\" and \"angle\""));
         };
         let camera = Camera { eye, look_at, up, vfov };
-        if let Some(what) = check::camera(&camera) {
-            return Err(self.scan.source.error_at(begin, what));
+        if let Some(what) = camera.fault() {
+            return Err(self.scan.source.error_at(begin, format!("impossible camera: {what}")));
         }
         if !self.scene.cameras.is_empty() {
             self.warn_at(begin, "a second view: the first is used unless another is chosen");

@@ -1,0 +1,60 @@
+//! The native scene format, version 1, as TOML and as JSON: `docs/scene-format.md`.
+//!
+//! A text becomes a [`document`] in which every value knows its place; the document becomes [`sections`] by serde, and
+//! the sections a scene. Each step tells its faults at their place.
+
+mod build;
+mod color;
+mod decode;
+mod document;
+mod json;
+mod loose;
+#[cfg(feature = "schema")]
+mod schema;
+mod sections;
+mod toml;
+mod values;
+
+#[cfg(feature = "schema")]
+pub(crate) use schema::schema;
+
+use whitted::scene::Scene;
+
+use crate::error::Error;
+use crate::files::Context;
+use crate::source::{Source, utf8};
+use document::{Fault, Node};
+
+/// Read a scene written in TOML.
+pub(crate) fn read_toml(source: Source<'_>, context: &mut Context<'_>) -> Result<Scene, Error> {
+    read(source, context, toml::parse)
+}
+
+/// Read a scene written in JSON.
+pub(crate) fn read_json(source: Source<'_>, context: &mut Context<'_>) -> Result<Scene, Error> {
+    read(source, context, json::parse)
+}
+
+fn read(source: Source<'_>, context: &mut Context<'_>, parse: fn(&str) -> Result<Node, Fault>) -> Result<Scene, Error> {
+    let mut document = parse(utf8(&source)?).map_err(|fault| error(&source, fault))?;
+    sections::name_cameras(&mut document);
+    if document.get("version").is_none() {
+        return Err(source.error_whole("the key \"version\" is missing").hint("a scene begins with version = 1"));
+    }
+    let file = decode::decode(&document).map_err(|fault| error(&source, fault))?;
+    drop(document);
+    build::build(&file, source, context)
+}
+
+/// The error about a fault of the text `source`.
+fn error(source: &Source<'_>, fault: Fault) -> Error {
+    let error = match fault.span {
+        // The place of the document as a whole.
+        None | Some(document::Span { start: 0, end: 0 }) => source.error_whole(fault.what),
+        Some(span) => source.error(span, fault.what),
+    };
+    match fault.hint {
+        Some(hint) => error.hint(hint),
+        None => error,
+    }
+}
