@@ -35,8 +35,7 @@ mod text;
 
 use std::path::{Path, PathBuf};
 
-use whitted::scene::{NamedMaterial, Scene};
-use whitted::shading::Material;
+use whitted::scene::Scene;
 
 pub use error::{Error, ErrorKind, Excerpt, Place, Report, Warning};
 pub use files::LoadOptions;
@@ -96,7 +95,8 @@ impl Format {
     }
 }
 
-/// Load the scene or mesh in the file `path`; its extension tells the format.
+/// Load the scene or mesh in the file `path`; its extension tells the format. A scene without a camera gets what it lacks
+/// to be seen: [`Scene::furnish`].
 ///
 /// # Errors
 /// If the file cannot be read, is wrong, uses what is not supported, or exceeds a limit of `options`.
@@ -117,7 +117,7 @@ pub fn parse(format: Format, name: &Path, bytes: Vec<u8>, options: &LoadOptions)
 }
 
 fn read(format: Format, file: &Path, bytes: Vec<u8>, mut context: Context<'_>) -> Result<Loaded, Error> {
-    let scene = match format {
+    let mut scene = match format {
         Format::Toml => scene::read_toml(Source { file, bytes: &source::decode(file, bytes)? }, &mut context)?,
         Format::Json => scene::read_json(Source { file, bytes: &source::decode(file, bytes)? }, &mut context)?,
         Format::Nff => {
@@ -126,10 +126,14 @@ fn read(format: Format, file: &Path, bytes: Vec<u8>, mut context: Context<'_>) -
             nff::read(source, options, &mut |w| context.warn(w))?
         }
         Format::Obj | Format::Ply => {
-            let mesh = read_mesh(format, file, bytes, &mut context)?;
-            bare_mesh(mesh, file)
+            let MeshFile { mut mesh, materials } = read_mesh(format, file, bytes, &mut context)?;
+            mesh.name = file.to_string_lossy().into_owned();
+            Scene { meshes: vec![mesh], materials, ..Scene::default() }
         }
     };
+    if scene.cameras.is_empty() {
+        scene.furnish();
+    }
     Ok(Loaded { scene, warnings: context.take_warnings(file), files: context.files })
 }
 
@@ -147,16 +151,6 @@ fn read_mesh(format: Format, file: &Path, bytes: Vec<u8>, context: &mut Context<
         context.warn(Error::new(ErrorKind::Input, file, what).into_warning());
     }
     Ok(mesh)
-}
-
-/// A scene that holds nothing but a mesh.
-fn bare_mesh(file: MeshFile, path: &Path) -> Scene {
-    let MeshFile { mut mesh, mut materials } = file;
-    mesh.name = path.to_string_lossy().into_owned();
-    if materials.is_empty() {
-        materials.push(NamedMaterial { name: "default".to_owned(), material: Material::default() });
-    }
-    Scene { meshes: vec![mesh], materials, ..Scene::default() }
 }
 
 /// The JSON Schema of the native format, as `docs/scene.schema.json` holds it.

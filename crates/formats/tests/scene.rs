@@ -14,6 +14,9 @@ fn load(format: Format, text: &str) -> Result<Loaded, Error> {
     formats::parse(format, Path::new(name), text.as_bytes().to_vec(), &LoadOptions::default())
 }
 
+/// A camera for scenes that are not to be furnished.
+const CAMERA: &str = "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+
 fn scene(text: &str) -> Scene {
     load(Format::Toml, &format!("version = 1\n{text}")).unwrap_or_else(|e| panic!("{e}")).scene
 }
@@ -35,11 +38,15 @@ fn folder(name: &str) -> PathBuf {
 }
 
 #[test]
-fn an_empty_scene_has_the_defaults() {
-    let scene = scene("");
-    assert_eq!(scene.settings, Settings::default());
-    assert_eq!((scene.background, scene.ambient), (Background::Color(Vec3f::ZERO), Vec3f::ONE));
-    assert!(scene.cameras.is_empty() && scene.lights.is_empty() && scene.materials.is_empty());
+fn a_scene_without_a_camera_is_furnished_and_one_with_is_not() {
+    let stage = scene("[[sphere]]\ncenter = [0, 0, 0]\nradius = 1");
+    assert_eq!((stage.cameras.len(), stage.lights.len(), stage.planes.len()), (1, 3, 1));
+    let text = "version = 1\n[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]";
+    let loaded = load(Format::Toml, text).unwrap();
+    assert_eq!(loaded.scene.settings, Settings::default());
+    assert_eq!((loaded.scene.background, loaded.scene.ambient), (Background::Color(Vec3f::ZERO), Vec3f::ONE));
+    assert!(loaded.scene.lights.is_empty() && loaded.scene.planes.is_empty());
+    assert!(loaded.warnings[0].to_string().contains("no light"));
 }
 
 #[test]
@@ -54,11 +61,11 @@ fn cameras_have_names_if_they_are_given() {
 
 #[test]
 fn render_settings_are_taken_over() {
-    let scene = scene(
-        "[render]\nsize = [64, 32]\ndepth = 3\nmin_weight = 0.25\naa = 9\naa_max = 4\nsampling = \"corners\"\n\
+    let scene = scene(&format!(
+        "{CAMERA}[render]\nsize = [64, 32]\ndepth = 3\nmin_weight = 0.25\naa = 9\naa_max = 4\nsampling = \"corners\"\n\
          shadows = \"opaque\"\nexposure = -1.5\ntone = \"reinhard\"\nseed = 7\n\
-         background = { up = \"#ffffff\", down = [0, 0.5, 1] }\nambient = [0.5, 0.5, 0.5]",
-    );
+         background = {{ up = \"#ffffff\", down = [0, 0.5, 1] }}\nambient = [0.5, 0.5, 0.5]",
+    ));
     let Settings { size, depth, min_weight, antialias, antialias_max, exposure, tone, seed, .. } = scene.settings;
     assert_eq!((size, depth, min_weight, antialias_max), ([64, 32], 3, 0.25, 4));
     assert_eq!((antialias, exposure, tone, seed), (Antialias::Uniform(9), -1.5, Tone::Reinhard, 7));
@@ -103,15 +110,15 @@ fn materials_may_be_written_short_or_long() {
 
 #[test]
 fn things_of_all_kinds() {
-    let scene = scene(
-        "[material.red]\ncolor = [1, 0, 0]\n\
+    let scene = scene(&format!(
+        "{CAMERA}[material.red]\ncolor = [1, 0, 0]\n\
          [[sphere]]\ncenter = [0, 1, 0]\nradius = 0.5\nmaterial = \"red\"\n\
          [[plane]]\npoint = [0, -1, 0]\n\
          [[disc]]\ncenter = [0, 0, 0]\nnormal = [0, 0, 2]\nradius = 2\ninner_radius = 1\n\
          [[box]]\nmin = [0, 0, 0]\nmax = [1, 2, 3]\nmaterial = \"red\"\n\
          [[cylinder]]\nbase = [0, 0, 0]\napex = [0, 1, 0]\nradius = 0.1\ncapped = false\n\
          [[cone]]\nbase = [0, 0, 0]\napex = [0, 1, 0]\nbase_radius = 0.1\n",
-    );
+    ));
     assert_eq!(scene.materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), ["red", "default"]);
     assert_eq!(scene.spheres, [(Vec3d::new(0.0, 1.0, 0.0), 0.5, 0)]);
     assert_eq!((scene.planes[0].0.normal, scene.planes[0].1), (Vec3d::new(0.0, 1.0, 0.0), 1));
@@ -170,11 +177,11 @@ fn the_papers_scenes_are_the_generators() {
 
 #[test]
 fn generators_take_materials_and_places() {
-    let scene = scene(
-        "[material.a]\n[material.b]\n\
+    let scene = scene(&format!(
+        "{CAMERA}[material.a]\n[material.b]\n\
          [[generate]]\nkind = \"sphereflake\"\ndepth = 1\nmaterials = [\"b\", \"a\"]\ncenter = [1, 2, 3]\nscale = 2\n\
          [[generate]]\nkind = \"grid\"\nper_edge = 2\nfamily = \"all4\"\n",
-    );
+    ));
     assert_eq!(scene.spheres[0], (Vec3d::new(1.0, 2.0, 3.0), 1.0, 1));
     assert!(scene.spheres[1..10].iter().all(|s| s.2 == 0));
     assert_eq!((scene.spheres.len(), scene.materials.len()), (1 + 9 + 8, 2 + 12));

@@ -78,7 +78,7 @@ impl<'a> Reader<'a, '_> {
     fn entity(&mut self, word: &'a [u8]) -> Result<(), Error> {
         match word {
             b"v" => self.view(word),
-            b"b" => self.background(),
+            b"b" => self.background(word),
             b"l" => self.light(word),
             b"f" => self.fill(word),
             b"s" => self.sphere(word),
@@ -150,25 +150,25 @@ impl<'a> Reader<'a, '_> {
         Ok(())
     }
 
-    fn background(&mut self) -> Result<(), Error> {
+    fn background(&mut self, word: &[u8]) -> Result<(), Error> {
         let color = self.scan.vector("the background colour")?;
-        self.scene.background = Background::Color(self.color(color)?);
+        self.scene.background = Background::Color(self.color(word, color)?);
         Ok(())
     }
 
     /// A colour in single precision.
-    fn color(&self, color: Vec3d) -> Result<Vec3f, Error> {
+    fn color(&self, word: &[u8], color: Vec3d) -> Result<Vec3f, Error> {
         let single = color.to_f32();
-        if single.is_finite() {
+        if single.is_finite() && single.min_component() >= 0.0 {
             return Ok(single);
         }
-        Err(self.scan.source.error_whole(format!("the colour {:?} is too large", color.to_array())))
+        Err(self.scan.source.error_at(word, format!("the colour {:?} is negative or too large", color.to_array())))
     }
 
     fn light(&mut self, word: &[u8]) -> Result<(), Error> {
         let position = self.scan.vector("the position of the light")?;
         let color = match self.scan.numbers_in_line("the colour of the light")?.as_slice() {
-            &[r, g, b] => self.color(Vec3d::new(r, g, b))?,
+            &[r, g, b] => self.color(word, Vec3d::new(r, g, b))?,
             [] => {
                 self.uncolored_lights.push(self.scene.lights.len());
                 Vec3f::ONE
@@ -208,7 +208,11 @@ impl<'a> Reader<'a, '_> {
             }
             numbers[7] = 1.0;
         }
-        self.fill = Some(self.material(numbers));
+        let fill = self.material(numbers);
+        if let Some(what) = self.scene.materials[fill as usize].material.fault() {
+            return Err(self.scan.source.error_at(word, format!("impossible material: {what}")));
+        }
+        self.fill = Some(fill);
         Ok(())
     }
 

@@ -73,10 +73,10 @@ impl Numbers {
             b"Kd" => self.kd = color(source, word, words)?,
             b"Ks" => self.ks = color(source, word, words)?,
             b"Tf" => self.tf = Some(color(source, word, words)?),
-            b"Ns" => self.ns = number(source, word, words)?.max(0.0),
+            b"Ns" => self.ns = number(source, word, words)?,
             b"Ni" => self.ni = number(source, word, words)?,
-            b"d" => self.d = number(source, word, words)?.clamp(0.0, 1.0),
-            b"Tr" => self.d = 1.0 - number(source, word, words)?.clamp(0.0, 1.0),
+            b"d" => self.d = number(source, word, words)?.min(1.0),
+            b"Tr" => self.d = 1.0 - number(source, word, words)?.min(1.0),
             b"illum" => self.illum = number(source, word, words)? as u32,
             _ => return Ok(false),
         }
@@ -127,8 +127,8 @@ fn number(source: &Source<'_>, word: &[u8], words: Words<'_>) -> Result<f32, Err
 
 fn single(source: &Source<'_>, word: &[u8]) -> Result<f32, Error> {
     let number = finite(source, word, "a property of a material")? as f32;
-    match number.is_finite() {
+    match number.is_finite() && number >= 0.0 {
         true => Ok(number),
-        false => Err(source.error_at(word, format!("{} is too large", quoted(word)))),
+        false => Err(source.error_at(word, format!("{} is negative or too large", quoted(word)))),
     }
 }

@@ -42,6 +42,10 @@ pub(super) fn build(file: &SceneFile, source: Source<'_>, context: &mut Context<
     builder.objects(file)?;
     file.mesh.iter().try_for_each(|mesh| builder.mesh(mesh))?;
     file.generate.iter().try_for_each(|section| builder.generate(section))?;
+    if builder.scene.lights.is_empty() && !builder.scene.cameras.is_empty() {
+        let what = "there is no light: only ambient light will be seen";
+        builder.context.warn(source.error_whole(what).into_warning());
+    }
     Ok(builder.scene)
 }
 
