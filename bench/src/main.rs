@@ -9,6 +9,7 @@
 mod builds;
 mod contest;
 mod embree;
+mod field;
 mod machine;
 mod options;
 mod ours;
@@ -18,6 +19,7 @@ mod pictures;
 mod ray_sets;
 mod rays;
 mod record;
+mod row;
 mod scenes;
 
 use clap::Parser;

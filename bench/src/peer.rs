@@ -44,8 +44,7 @@ impl<'d> Peer<'d> {
     }
 
     fn add<'s, P: Packet + 's>(&'s self, set: &RaySet, calls: &mut Vec<Box<dyn Contestant + 's>>) {
-        for (rays, note) in [(Some(&set.rays), ""), (set.reversed.as_ref(), " from light")] {
-            let Some(rays) = rays else { continue };
+        for (rays, note) in set.orientations() {
             let packets = Rc::new(RefCell::new(Packets::<P>::new(rays)));
             let flags: &[bool] = if P::WIDTH == 1 { &[false] } else { &[false, true] };
             for &coherent in flags {

@@ -71,6 +71,12 @@ pub(crate) struct RaySet {
 }
 
 impl RaySet {
+    /// The rays, and where a caller may choose the same segments turned round, each with a note for tables.
+    pub(crate) fn orientations(&self) -> Vec<(&RayBatch, &'static str)> {
+        let turned = self.reversed.as_ref().map(|rays| (rays, " from light"));
+        std::iter::once((&self.rays, "")).chain(turned).collect()
+    }
+
     /// Keep at most `count` rays: runs of 4096 neighbours, evenly spread.
     pub(crate) fn thin(&mut self, count: usize) {
         const RUN: usize = 4096;

@@ -6,16 +6,17 @@
 //! shadow rays round. Embree's best call counts, over both flags and both builds; so does our better orientation.
 //! Embree's calls know no batches: they answer the same loop whatever our batch is.
 
-use crate::contest::{self, Contestant, Times};
 use crate::embree::Device;
+use crate::field::Field;
 use crate::machine;
 use crate::options::{EmbreeOptions, OurOptions, SceneOptions};
-use crate::ours::{Judge, Ours, TimedBuild, no_tree};
-use crate::peer::{Peer, differing};
-use crate::ray_sets::{Origins, RayKind, RaySet};
+use crate::ours::{Judge, TimedBuild, no_tree};
+use crate::peer::Peer;
+use crate::ray_sets::{Origins, RayKind};
+use crate::row::Row;
 use crate::scenes::{self, Source};
 use clap::{Args, ValueEnum};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::error::Error;
 use std::path::PathBuf;
 use whitted::ray::HitBatch;
@@ -70,65 +71,6 @@ impl Options {
 
 /// Sizes of our batches: the whole set first.
 const BATCHES: [(&str, usize); 4] = [("all", usize::MAX), ("4096", 4096), ("1024", 1024), ("64", 64)];
-
-/// One line of the table.
-struct Row {
-    scene: String,
-    kind: RayKind,
-    batch: &'static str,
-    rays: usize,
-    ours_mrays: f64,
-    ours_note: String,
-    peer: Option<PeerCell>,
-    /// Answers of ours that differ from brute force, and how many were compared.
-    judged: (usize, usize),
-}
-
-/// Embree's part of a row.
-struct PeerCell {
-    mrays: f64,
-    call: String,
-    ratio: f64,
-    /// Rays for which the answers differ.
-    wrong: usize,
-}
-
-impl Row {
-    fn header() -> String {
-        let numbers = "  ours Mrays/s  Embree Mrays/s  best call              ratio  wrong";
-        format!("{:<12} {:<8} {:>5}{numbers}", "scene", "rays", "batch")
-    }
-
-    fn text(&self) -> String {
-        let start = format!("{:<12} {:<8} {:>5} {:>13.2}", self.scene, self.kind, self.batch, self.ours_mrays);
-        let peer = self.peer.as_ref().map_or_else(
-            || format!("  {:>14}  {:<21} {:>6} {:>6}", "-", "-", "-", "-"),
-            |peer| format!("  {:>14.2}  {:<21} {:>6.2} {:>6}", peer.mrays, peer.call, peer.ratio, peer.wrong),
-        );
-        let note = if self.ours_note.is_empty() { String::new() } else { format!("  ours{}", self.ours_note) };
-        let (wrong, judged) = self.judged;
-        let fault = if wrong == 0 { String::new() } else { format!("  OURS FALSE: {wrong} of {judged} judged") };
-        start + &peer + &note + &fault
-    }
-
-    fn json(&self) -> Value {
-        let peer = self.peer.as_ref();
-        json!({
-            "scene": self.scene,
-            "rays": self.kind.to_string(),
-            "batch": self.batch,
-            "count": self.rays,
-            "ours_mrays": self.ours_mrays,
-            "ours_call": self.ours_note.trim(),
-            "embree_mrays": peer.map(|peer| peer.mrays),
-            "embree_call": peer.map(|peer| &peer.call),
-            "ratio": peer.map(|peer| peer.ratio),
-            "wrong": peer.map(|peer| peer.wrong),
-            "ours_false": self.judged.0,
-            "ours_judged": self.judged.1,
-        })
-    }
-}
 
 /// Measure and print; returns the rows as JSON.
 ///
@@ -199,82 +141,11 @@ fn measure_scene(
         let mut set = origins.set(kind);
         set.thin(options.max_rays.unwrap_or(usize::MAX));
         if !set.rays.is_empty() {
-            measure_set(options, &source.name, &set, query, peer.as_ref(), &judge).into_iter().for_each(&mut *emit);
+            let batches: Vec<_> = BATCHES.into_iter().filter(|&(name, _)| options.wants(name)).collect();
+            let mut field = Field::new(&set, query, &batches, peer.as_ref());
+            field.run(options.passes);
+            batches.iter().for_each(|&(batch, _)| emit(field.row(&source.name, batch, &judge)));
         }
     }
     Ok(())
-}
-
-/// A row for each size of batch.
-fn measure_set(
-    options: &Options,
-    scene: &str,
-    set: &RaySet,
-    query: Query<'_>,
-    peer: Option<&Peer<'_>>,
-    judge: &Judge<'_>,
-) -> Vec<Row> {
-    let is_occlusion = set.kind.is_occlusion();
-    let orientations: Vec<_> = [(Some(&set.rays), ""), (set.reversed.as_ref(), " from light")]
-        .into_iter()
-        .filter_map(|(r, n)| Some((r?, n)))
-        .collect();
-    let mut contestants: Vec<Box<dyn Contestant + '_>> = Vec::new();
-    let batches: Vec<_> = BATCHES.into_iter().filter(|&(name, _)| options.wants(name)).collect();
-    for &(_, size) in &batches {
-        for &(rays, note) in &orientations {
-            contestants.push(Box::new(Ours::new(query, rays, size, is_occlusion, note)));
-        }
-    }
-    let ours_count = contestants.len();
-    contestants.extend(peer.map(|peer| peer.calls(set)).unwrap_or_default());
-    let times = contest::run(&mut contestants, options.passes);
-
-    let best_peer = fastest(&times, ours_count..times.len());
-    let peer_answers = best_peer.map(|best| answers(contestants[best].as_mut()));
-    let groups = batches.iter().zip((0..ours_count).step_by(orientations.len()));
-    let row = |(&(batch, _), first): (&(&'static str, usize), usize)| {
-        let best = fastest(&times, first..first + orientations.len()).expect("our own calls never drop out");
-        let ours = times[best].as_ref().expect("chosen among those that ran");
-        let own_answers = answers(contestants[best].as_mut());
-        let rays = orientations[best - first].0;
-        let mrays = |times: &Times| rays.len() as f64 / times.median() / 1e6;
-        let suspects = peer_answers.as_ref().map(|theirs| differing(rays, &own_answers, theirs));
-        let all: Vec<usize> = (0..rays.len()).collect();
-        let judged = [Some(&all), suspects.as_ref()].into_iter().flatten();
-        let judged = judged.map(|indices| judge.wrong(rays, &own_answers, indices, is_occlusion));
-        let peer = best_peer.zip(suspects.as_ref()).map(|(best, suspects)| {
-            let theirs = times[best].as_ref().expect("chosen among those that ran");
-            PeerCell {
-                mrays: mrays(theirs),
-                call: contestants[best].name(),
-                ratio: ours.speed_up_over(theirs),
-                wrong: suspects.len(),
-            }
-        });
-        Row {
-            scene: scene.into(),
-            kind: set.kind,
-            batch,
-            rays: rays.len(),
-            ours_mrays: mrays(ours),
-            ours_note: contestants[best].name(),
-            peer,
-            judged: judged.fold((0, 0), |sum, next| (sum.0 + next.0, sum.1 + next.1)),
-        }
-    };
-    groups.map(row).collect()
-}
-
-/// The contestant in `range` with the shortest median.
-fn fastest(times: &[Option<Times>], range: std::ops::Range<usize>) -> Option<usize> {
-    let medians = range.filter_map(|index| Some((index, times[index].as_ref()?.median())));
-    medians.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index)
-}
-
-/// Answers of a fresh pass: calls that read the same packets overwrite each other's.
-fn answers(contestant: &mut (dyn Contestant + '_)) -> Vec<f32> {
-    contestant.prepare();
-    contestant.run();
-    contestant.answers()
 }
