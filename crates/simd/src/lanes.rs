@@ -1,5 +1,6 @@
 //! The vocabulary of kernels: what a token, a vector of lanes and a mask can do.
 
+use crate::F64Lanes;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -14,6 +15,9 @@ pub trait Simd: Copy + Send + Sync + Debug + 'static {
     type F32x8: F32Lanes<Token = Self, Array = [f32; 8], U32: U32Lanes<Array = [u32; 8]>>;
     /// Sixteen floats.
     type F32x16: F32Lanes<Token = Self, Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>;
+
+    /// Eight doubles.
+    type F64x8: F64Lanes<Narrow = Self::F32x8>;
 
     /// Short lower-case name as used by `--simd`: `scalar`, `sse4.2`, `avx2`, `avx512`.
     const NAME: &'static str;
@@ -101,6 +105,8 @@ pub trait F32Lanes:
     /// Number of lanes.
     const WIDTH: usize;
 
+    /// The token that the lanes were made from.
+    fn token(self) -> Self::Token;
     /// All lanes `value`.
     fn splat(token: Self::Token, value: f32) -> Self;
     /// The lanes of `from`, lane 0 first. No alignment needed.

@@ -19,6 +19,7 @@
 
 mod array;
 mod dispatch;
+mod double;
 mod lanes;
 mod level;
 pub mod math;
@@ -32,6 +33,7 @@ mod x86;
 
 pub use array::lanes_from_fn;
 pub use dispatch::{Kernel, dispatch};
+pub use double::{ArrayF64, F64Lanes};
 pub use lanes::{F32Lanes, MaskLanes, Simd, U32Lanes};
 pub use level::Level;
 pub use memory::advise_huge_pages;

@@ -100,6 +100,10 @@ where
     type U32 = Pair<V::U32>;
     type Array = <V::Array as Double>::Twice;
 
+    #[inline(always)]
+    fn token(self) -> Self::Token {
+        self.0.token()
+    }
     vector!(f32);
     halves! {
         min(other: Self) -> Self;

@@ -11,6 +11,7 @@ impl Simd for Scalar {
     type F32x4 = ScalarF32<4>;
     type F32x8 = ScalarF32<8>;
     type F32x16 = ScalarF32<16>;
+    type F64x8 = crate::ArrayF64<ScalarF32<8>>;
     const NAME: &'static str = "scalar";
 }
 
@@ -129,6 +130,10 @@ where
     type Array = [f32; N];
     const WIDTH: usize = N;
 
+    #[inline(always)]
+    fn token(self) -> Self::Token {
+        Scalar
+    }
     #[inline(always)]
     fn splat(_: Scalar, value: f32) -> Self {
         Self([value; N])

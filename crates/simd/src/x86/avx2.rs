@@ -16,6 +16,7 @@ impl Simd for Avx2 {
     type F32x4 = F32x4<Self>;
     type F32x8 = F32x8;
     type F32x16 = Pair<F32x8>;
+    type F64x8 = super::double::F64x4x2;
     const NAME: &'static str = "avx2";
 
     #[inline(always)]

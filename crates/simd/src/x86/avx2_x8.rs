@@ -52,6 +52,10 @@ impl F32Lanes for F32x8 {
     type U32 = U32x8;
     type Array = [f32; 8];
 
+    #[inline(always)]
+    fn token(self) -> Self::Token {
+        self.1
+    }
     memory! {
         f32 8;
         splat(value) = _mm256_set1_ps(value);

@@ -19,6 +19,7 @@ impl Simd for Avx512 {
     type F32x4 = F32x4<Self>;
     type F32x8 = F32x8;
     type F32x16 = F32x16;
+    type F64x8 = super::double::F64x8;
     const NAME: &'static str = "avx512";
 
     #[inline(always)]

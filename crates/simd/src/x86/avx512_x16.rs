@@ -52,6 +52,10 @@ impl F32Lanes for F32x16 {
     type U32 = U32x16;
     type Array = [f32; 16];
 
+    #[inline(always)]
+    fn token(self) -> Self::Token {
+        self.1
+    }
     memory! {
         f32 16;
         splat(value) = _mm512_set1_ps(value);

@@ -12,6 +12,7 @@ mod avx2_x8;
 mod avx512;
 mod avx512_x16;
 mod avx512_x8;
+mod double;
 mod left_pack;
 mod sse42;
 mod x4;

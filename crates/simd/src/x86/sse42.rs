@@ -15,6 +15,7 @@ impl Simd for Sse42 {
     type F32x4 = F32x4<Self>;
     type F32x8 = Pair<F32x4<Self>>;
     type F32x16 = Pair<Pair<F32x4<Self>>>;
+    type F64x8 = crate::ArrayF64<Pair<F32x4<Self>>>;
     const NAME: &'static str = "sse4.2";
 
     #[inline(always)]

@@ -58,6 +58,10 @@ impl<S: Sse> F32Lanes for F32x4<S> {
     type U32 = U32x4<S>;
     type Array = [f32; 4];
 
+    #[inline(always)]
+    fn token(self) -> Self::Token {
+        self.1
+    }
     memory! {
         f32 4;
         splat(value) = _mm_set1_ps(value);

@@ -10,6 +10,7 @@ mod disc;
 mod frustum;
 mod plane;
 pub(crate) mod primitives;
+mod refine;
 mod shape;
 pub(crate) mod sphere;
 mod surface;
@@ -22,6 +23,7 @@ pub use disc::Disc;
 pub use plane::Plane;
 pub use primitives::{Kind, MeshError, Primitives};
 
+pub(crate) use refine::{refine, refine_one_by_one};
 pub use shape::{Crossings, Shape};
 
 pub use sphere::Sphere;

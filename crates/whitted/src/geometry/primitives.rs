@@ -222,7 +222,7 @@ impl Primitives {
 
     /// The parameter and the surface coordinates of a fresh hit at `t`, by double precision.
     #[inline(always)]
-    pub(crate) fn refine(&self, ray: &Ray, t: f32, primitive: u32) -> Refined {
+    pub(super) fn refine(&self, ray: &Ray, t: f32, primitive: u32) -> Refined {
         match self.kind(primitive) {
             Kind::Triangle(i) => self.triangle(i).refine(ray, t),
             Kind::Sphere(i) => Refined { t: self.spheres[i].refine(ray, t), u: 0.0, v: 0.0 },

@@ -76,18 +76,6 @@ pub(crate) fn first_in_range<F: F32Lanes>((near, far): (F, F), t_min: F, t_max: 
 }
 
 impl Sphere {
-    /// Recompute the parameter of a hit in double precision.
-    pub(crate) fn refine(&self, ray: &Ray, t: f32) -> f32 {
-        let (o, d) = (ray.origin.to_f64() - self.center.to_f64(), ray.direction.to_f64());
-        let inverse = 1.0 / d.length_squared();
-        let middle = -o.dot(d) * inverse;
-        let nearest = o + d * middle;
-        let radius = f64::from(self.radius);
-        let half_chord = ((radius * radius - nearest.length_squared()) * inverse).max(0.0).sqrt();
-        let root = if f64::from(t) < middle { middle - half_chord } else { middle + half_chord };
-        (root as f32).max(ray.t_min).min(ray.t_max)
-    }
-
     /// Position and outward unit normal where a ray hits at `t`.
     pub(crate) fn surface(&self, ray: &Ray, t: f32) -> (Vec3f, Vec3f) {
         let center = self.center.to_f64();

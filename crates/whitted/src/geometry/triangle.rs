@@ -21,7 +21,6 @@
 
 use super::splat;
 use crate::math::{Vec3d, Vec3f};
-use crate::ray::Ray;
 use simd::F32Lanes;
 
 /// A bound on the relative error of the sheared coordinates and of t, in units of 2⁻²⁴.
@@ -139,29 +138,6 @@ pub(crate) struct Refined {
 }
 
 impl Triangle {
-    /// Recompute a hit in double precision: the weights of the second and third vertex, and t of the point that they
-    /// give.
-    ///
-    /// `t` is the value found by [`intersect`]. The weights are kept within the triangle, hence t within its depth, and
-    /// within the ray's range; where even `f64` sees no area the given `t` stays. Error of t: 2⁻²⁴ relative from
-    /// rounding, plus 2⁻⁵⁰ times the condition of the plane.
-    #[inline(always)]
-    pub(crate) fn refine(&self, ray: &Ray, t: f32) -> Refined {
-        let (o, d) = (ray.origin.to_f64(), ray.direction.to_f64());
-        let [a, b, c] = self.vertices.map(Vec3f::to_f64);
-        let (ab, ac, from_a) = (b - a, c - a, o - a);
-        let p = d.cross(ac);
-        let area = ab.dot(p);
-        if area == 0.0 || area.is_nan() {
-            return Refined { t, u: 0.0, v: 0.0 };
-        }
-        let per_area = 1.0 / area;
-        let u = (from_a.dot(p) * per_area).clamp(0.0, 1.0);
-        let v = (d.dot(from_a.cross(ab)) * per_area).clamp(0.0, 1.0 - u);
-        let along = (ab * u + ac * v - from_a).dot(d) / d.length_squared();
-        Refined { t: (along as f32).max(ray.t_min).min(ray.t_max), u: u as f32, v: v as f32 }
-    }
-
     /// Position and geometric unit normal at barycentric `u`, `v`; the normal of a triangle without area is +y.
     pub(crate) fn surface(&self, u: f32, v: f32) -> (Vec3f, Vec3f) {
         let [a, b, c] = self.vertices.map(Vec3f::to_f64);

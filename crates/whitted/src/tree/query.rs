@@ -3,8 +3,8 @@
 use super::goal::{Any, Closest, Goal, Next};
 use super::walk::{self, Lists, PreparedRays};
 use super::{BitSet, Occlusion, Tree, TreeKind, WalkKind, brute_force};
-use crate::geometry::Primitives;
-use crate::ray::{HitBatch, NONE, RayBatch};
+use crate::geometry::{self, Primitives};
+use crate::ray::{HitBatch, RayBatch};
 use simd::Level;
 use std::ops::{AddAssign, Range};
 
@@ -133,12 +133,9 @@ impl Query<'_> {
 
     /// Give every hit its t in double precision and its surface coordinates.
     fn refine(&self, rays: &RayBatch, hits: &mut HitBatch) {
-        let rows = hits.t.iter_mut().zip(&mut hits.u).zip(&mut hits.v).zip(&hits.primitive);
-        for (index, (((t, u), v), &primitive)) in rows.enumerate() {
-            if primitive != NONE {
-                let refined = self.primitives.refine(&rays.get(index), *t, primitive);
-                (*t, *u, *v) = (refined.t, refined.u, refined.v);
-            }
+        match self.tree.kind() {
+            TreeKind::None => geometry::refine_one_by_one(self.primitives, rays, hits),
+            _ => geometry::refine(self.level, self.primitives, rays, hits),
         }
     }
 }
