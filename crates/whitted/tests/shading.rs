@@ -5,8 +5,8 @@ use simd::{F32Lanes, Kernel, Level, Simd};
 use whitted::math::{SplitMix64, Vec3, Vec3d, Vec3f};
 use whitted::scene::{Light, LightKind};
 use whitted::shading::{
-    self, Material, PreparedLight, PreparedMaterial, PreparedTexture, Reflectance, SpecularModel, Texture, fresnel,
-    lanes, mirrored, refracted, schlick,
+    self, LocalSurface, Material, PreparedLight, PreparedMaterial, PreparedTexture, Reflectance, SpecularModel,
+    Texture, fresnel, lanes, mirrored, refracted, schlick,
 };
 
 /// A file of `material/numbers`, if the environment says where it is.
@@ -421,7 +421,10 @@ impl Kernel for AllOptics<'_> {
         let (through, refracts) = lanes::refracted(token, incident, normal, eta);
         let arriving = self.light.at_lanes(token, position);
         let color = self.material.texture().at(token, position);
-        let answer = lanes::answer(token, self.material.local(), color, normal, arriving.direction, -incident);
+        let splat = |value| S::F32x16::splat(token, value);
+        let surface = self.material.local().surface(Vec3f::ONE).map(splat);
+        let surface = LocalSurface { diffuse: surface.diffuse.times(color), ..surface };
+        let answer = lanes::answer(token, &surface, normal, arriving.direction, -incident);
         let cos = -incident.dot(normal);
         let zero = S::F32x16::splat(token, 0.0);
         let through = through.map(|a| S::F32x16::select(refracts, a, zero));

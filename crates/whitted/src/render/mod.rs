@@ -13,6 +13,7 @@ mod first_pass;
 mod frame;
 mod image;
 mod jitter;
+mod lighting;
 mod media;
 mod probe;
 mod progress;

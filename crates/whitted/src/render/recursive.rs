@@ -7,7 +7,7 @@ use super::context::Context;
 use super::progress::Cancelled;
 use super::queue::Tag;
 use super::samples::Samples;
-use super::shadow::{BEFORE_ALL, MAX_FILTERS, ShadowRay, opaque_primitives};
+use super::shadow::{BEFORE_ALL, MAX_FILTERS, opaque_primitives};
 use super::vertex::Vertex;
 use crate::math::Vec3f;
 use crate::ray::{Hit, HitBatch, Ray, RayBatch};
@@ -57,10 +57,12 @@ impl Recursive {
             vertex.note_first(context, samples);
         }
         samples.add(tag.sample, vertex.ambient(context));
-        for light in 0..context.look.light_count() {
-            if let Some(shadow) = vertex.toward(context, light) {
-                let light = self.arriving(context, &shadow, samples);
-                samples.add(tag.sample, light);
+        if let Some(point) = vertex.lit(context) {
+            for (light, origin) in context.look.lights() {
+                if let Some((ray, light)) = point.toward(light, *origin) {
+                    let light = self.arriving(context, &ray, light, samples);
+                    samples.add(tag.sample, light);
+                }
             }
         }
         let scattered = vertex.scatter(context, generation, samples);
@@ -77,16 +79,16 @@ impl Recursive {
         self.hit.get(0)
     }
 
-    /// The light of a shadow ray that reaches its surface.
-    fn arriving(&mut self, context: &Context, shadow: &ShadowRay, samples: &mut Samples) -> Vec3f {
+    /// What reaches a surface of `light` that comes along a shadow ray.
+    fn arriving(&mut self, context: &Context, ray: &Ray, light: Vec3f, samples: &mut Samples) -> Vec3f {
         self.ray.clear();
-        self.ray.push(&shadow.ray);
+        self.ray.push(ray);
         samples.statistics.shadow_rays += 1;
         let (opaque, out) = (opaque_primitives(context), &mut self.occlusion);
         samples.statistics += context.query.occluded(&self.ray, opaque, out, &mut self.scratch);
         match self.occlusion[0] {
-            Occlusion::Clear => shadow.light,
-            Occlusion::Filtered => self.filtered(context, shadow.light, samples),
+            Occlusion::Clear => light,
+            Occlusion::Filtered => self.filtered(context, light, samples),
             Occlusion::Blocked => Vec3f::ZERO,
         }
     }

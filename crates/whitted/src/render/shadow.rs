@@ -7,14 +7,6 @@ use crate::ray::{HitBatch, Ray, RayBatch};
 use crate::scene::Shadows;
 use crate::tree::{BitSet, Occlusion, Scratch};
 
-/// A ray between a surface and a lamp, and the light that its sample gains if nothing is in between.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ShadowRay {
-    pub(super) sample: u32,
-    pub(super) light: Vec3f,
-    pub(super) ray: Ray,
-}
-
 /// Light passes at most this many surfaces; what would pass more is lost. Bounds the work of a shadow ray.
 pub(super) const MAX_FILTERS: usize = 256;
 
@@ -39,9 +31,11 @@ pub(super) struct ShadowBatch {
 }
 
 impl ShadowBatch {
-    pub(super) fn push(&mut self, shadow: &ShadowRay) {
-        self.rays.push(&shadow.ray);
-        self.gains.push((shadow.sample, shadow.light));
+    /// Queue a ray between a surface and the lamp; its sample gains `light` if nothing is in between.
+    #[inline(always)]
+    pub(super) fn push(&mut self, ray: &Ray, sample: u32, light: Vec3f) {
+        self.rays.push(ray);
+        self.gains.push((sample, light));
     }
 
     /// Trace the rays, add the light that arrives, and forget the rays.

@@ -3,13 +3,12 @@
 //! Both renderers use this; neither queueing nor traversal is known here.
 
 use super::context::Context;
+use super::lighting::LitPoint;
 use super::queue::Tag;
 use super::samples::Samples;
-use super::shadow::ShadowRay;
-use crate::geometry::triangle::ERROR_ULPS;
 use crate::math::Vec3f;
 use crate::ray::{Hit, Ray};
-use crate::scene::ShadowOrigin;
+use crate::shading::LocalSurface;
 
 /// Where a ray met a surface, seen from the side from which it came.
 #[derive(Clone, Copy, Debug)]
@@ -90,40 +89,25 @@ impl Vertex {
         self.tag.weight.times(self.color.times(context.look.ambient()) * material.ambient())
     }
 
-    /// The shadow ray to a light and the light that arrives if nothing is in between; `None` if the surface is turned
-    /// away from it, by either normal, or does not answer to lights at all.
-    pub(super) fn toward(&self, context: &Context, light: usize) -> Option<ShadowRay> {
+    /// The vertex as lamps see it; `None` if it does not answer to light.
+    pub(super) fn lit(&self, context: &Context) -> Option<LitPoint<f32>> {
         let material = context.look.material(self.material);
-        if !material.answers_to_lights() {
-            return None;
-        }
-        let (light, shadow_origin) = context.look.light(light);
-        let arriving = light.at(self.position);
-        if !(self.n_g.dot(arriving.direction) > 0.0 && self.n_s.dot(arriving.direction) > 0.0) {
-            return None;
-        }
-        let answer = material.answer(self.color, self.n_s, arriving.direction, self.view);
-        Some(ShadowRay {
-            sample: self.tag.sample,
-            light: self.tag.weight.times(answer.times(arriving.light)),
-            ray: self.shadow_ray(arriving.distance, arriving.direction, shadow_origin),
+        let weighted = |color: Vec3f| color.times(self.tag.weight);
+        material.answers_to_lights().then(|| {
+            let surface = material.local().surface(self.color);
+            LitPoint {
+                position: self.position,
+                n_g: self.n_g,
+                n_s: self.n_s,
+                view: self.view,
+                error: self.error,
+                surface: LocalSurface {
+                    diffuse: weighted(surface.diffuse),
+                    specular: weighted(surface.specular),
+                    ..surface
+                },
+            }
         })
-    }
-
-    /// The part of the line between this point and a light that must be free.
-    ///
-    /// Intersection is exact to a few ulp of distances from the ray's origin, so a ray that comes from a distant light
-    /// needs a point that lies farther off the surface.
-    fn shadow_ray(&self, distance: f32, direction: Vec3f, origin: ShadowOrigin) -> Ray {
-        match origin {
-            ShadowOrigin::Light(light) => {
-                let point = self.off_surface(self.error + f32::EPSILON * ERROR_ULPS * distance);
-                Ray { origin: light, direction: point - light, t_min: 0.0, t_max: 1.0f32.next_down() }
-            }
-            ShadowOrigin::Surface => {
-                Ray { origin: self.off_surface(self.error), direction, t_min: 0.0, t_max: distance }
-            }
-        }
     }
 
     /// The point `by` above the surface, on the side of the viewer; beneath it if negative.

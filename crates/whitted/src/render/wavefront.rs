@@ -5,6 +5,7 @@
 //! has.
 
 use super::context::Context;
+use super::lighting::LitPoints;
 use super::probe::{Phase, Probe, watched};
 use super::progress::Cancelled;
 use super::queue::RayQueue;
@@ -25,7 +26,7 @@ pub(super) struct Wavefront {
     queues: Vec<RayQueue>,
     chunk: RayQueue,
     hits: HitBatch,
-    vertices: Vec<Vertex>,
+    lit: LitPoints,
     shadows: ShadowBatch,
     scratch: Scratch,
 }
@@ -77,7 +78,7 @@ impl Wavefront {
             self.queues.push(RayQueue::default());
         }
         let next = &mut self.queues[generation + 1];
-        self.vertices.clear();
+        self.lit.clear();
         for (index, tag) in self.chunk.tags.iter().enumerate() {
             let (ray, hit) = (self.chunk.rays.get(index), self.hits.get(index));
             if !hit.is_hit() {
@@ -93,16 +94,17 @@ impl Wavefront {
             for (ray, tag) in scattered.reflected.into_iter().chain(scattered.refracted) {
                 next.push(&ray, tag);
             }
-            self.vertices.push(vertex);
+            if let Some(point) = vertex.lit(context) {
+                self.lit.push(tag.sample, &point);
+            }
         }
     }
 
     /// Add the light of every lamp to every vertex, lamp by lamp.
     fn light<P: Probe>(&mut self, context: &Context, samples: &mut Samples, probe: &P) {
-        for light in 0..context.look.light_count() {
+        for (light, origin) in context.look.lights() {
             watched(probe, Phase::Shade, || {
-                let rays = self.vertices.iter().filter_map(|vertex| vertex.toward(context, light));
-                rays.for_each(|ray| self.shadows.push(&ray));
+                self.lit.light(context.execution.level, light, *origin, &mut self.shadows);
             });
             watched(probe, Phase::Shadow, || self.shadows.resolve(context, &mut self.scratch, samples));
         }

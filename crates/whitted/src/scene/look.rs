@@ -58,14 +58,9 @@ impl Look {
         &self.materials[index as usize]
     }
 
-    pub(crate) fn light_count(&self) -> usize {
-        self.lights.len()
-    }
-
-    /// Light `index`, which must exist.
-    pub(crate) fn light(&self, index: usize) -> (&PreparedLight, ShadowOrigin) {
-        let (light, origin) = &self.lights[index];
-        (light, *origin)
+    /// The lights, and where shadow rays to them start.
+    pub(crate) fn lights(&self) -> &[(PreparedLight, ShadowOrigin)] {
+        &self.lights
     }
 
     /// Light that reaches every point from everywhere.

@@ -13,7 +13,7 @@ mod prepared;
 mod texture;
 
 pub use light::{Arriving, PreparedLight};
-pub use local::LocalModel;
+pub use local::{LocalModel, LocalSurface};
 pub use material::{Material, Reflectance, SpecularModel, Texture};
 pub use prepared::{PreparedMaterial, fresnel, mirrored, refracted, schlick};
 pub use texture::PreparedTexture;

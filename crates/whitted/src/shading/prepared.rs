@@ -71,7 +71,7 @@ impl PreparedMaterial {
         self.transmit
     }
 
-    /// The parameters of [`lanes::answer`](super::lanes::answer).
+    /// The parameters of the local model.
     pub fn local(&self) -> &LocalModel {
         &self.local
     }
@@ -88,7 +88,8 @@ impl PreparedMaterial {
 
     /// [`lanes::answer`](super::lanes::answer) for one ray.
     pub fn answer(&self, color: Vec3f, normal: Vec3f, to_light: Vec3f, view: Vec3f) -> Vec3f {
-        values(local::answer::<One>(Scalar, &self.local, ones(color), ones(normal), ones(to_light), ones(view)))
+        let surface = self.local.surface(color).map(one);
+        values(local::answer::<One>(Scalar, &surface, ones(normal), ones(to_light), ones(view)))
     }
 
     /// What is left of light after `distance` ≥ 0 inside (Beer, Lambert); 1 where nothing is absorbed, even at infinity.
