@@ -25,7 +25,7 @@ pub(crate) const STEPS: &[Step] = &[
     Step {
         name: "clippy",
         purpose: "lints, warnings are errors",
-        action: Action::Cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], None),
+        action: Action::Cargo(&["clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"], None),
     },
     Step {
         name: "doc",
@@ -101,5 +101,18 @@ fn run_check(name: &str, check: fn(&std::path::Path) -> std::io::Result<Vec<tidy
             eprintln!("xtask: cannot read the repository: {error}");
             false
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_readme_names_the_test_command() {
+        let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+        let test = STEPS.iter().find(|step| step.name == "test").unwrap();
+        let Action::Cargo(arguments, _) = &test.action else { panic!("the tests are run by cargo") };
+        assert!(readme.contains(&format!("```sh\ncargo {}\n```", arguments.join(" "))));
     }
 }

@@ -4,6 +4,7 @@
 //! alone by its name. It knows cargo and the repository's text; it does not know what the program computes.
 
 mod ci;
+mod hits;
 mod tidy;
 
 use std::path::PathBuf;
@@ -13,6 +14,8 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["ci"] => ci::run_all(),
+        ["hits"] => hits::run(hits::RAYS),
+        ["hits", rays] => hits::run(rays),
         [name] => ci::run_one(name).unwrap_or_else(usage),
         _ => usage(),
     }
@@ -23,6 +26,7 @@ fn usage() -> ExitCode {
     for step in ci::STEPS {
         eprintln!("  {:<8} {}", step.name, step.purpose);
     }
+    eprintln!("\n  {:<8} compares N rays [default: {}] of every tree and walk with brute force", "hits N", hits::RAYS);
     ExitCode::from(2)
 }
 
