@@ -46,7 +46,7 @@ fn octahedron(center: Vec3d, size: f64) -> Mesh {
 /// A picture of a single body from a random side, at a random place, in a random size.
 fn picture(seed: u64, material: &Material, depth: u32) -> (Scene, Frame) {
     let mut random = SplitMix64::new(seed);
-    let mut direction = |random: &mut SplitMix64| {
+    let direction = |random: &mut SplitMix64| {
         Vec3d::new(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)).direction()
     };
     let size = 10f64.powf(random.uniform(-8.0, 8.0));
