@@ -34,7 +34,7 @@ fn compare(primitives: &Primitives, rays: &RayBatch, seed: u64) -> usize {
     for kind in [TreeKind::Kd, TreeKind::Fast, TreeKind::Best] {
         let tree = Tree::build(primitives, &kind.into());
         tree.validate(primitives).unwrap_or_else(|error| panic!("scene {seed}, {kind:?}: {error}"));
-        for walk in [WalkKind::Stream, WalkKind::Single] {
+        for walk in [WalkKind::Auto, WalkKind::Stream, WalkKind::Single] {
             for level in simd::Level::available() {
                 let query = Query { tree: &tree, primitives, level, walk };
                 query.closest_hit(rays, &mut found, &mut scratch);
@@ -95,15 +95,19 @@ fn all_hits_come_once_and_in_order() {
 fn every_walk_finds_the_hits_of_brute_force() {
     let per_scene = 1000;
     let mut hits = 0;
-    let scenes = rays_in_all() / per_scene / 24 + 1;
+    let scenes = rays_in_all() / per_scene / 36 + 1;
     for seed in 0..scenes {
         let mut rng = SplitMix64::new(seed);
         let count = 1 + rng.below(if seed % 4 == 0 { 256 } else { 40 });
         let primitives = common::scene(&mut rng, count);
-        let rays: Vec<_> = (0..per_scene).map(|_| common::ray(&mut rng, &primitives)).collect();
+        let rays: Vec<_> = if seed % 2 == 0 {
+            (0..per_scene).map(|_| common::ray(&mut rng, &primitives)).collect()
+        } else {
+            (0..per_scene / 64).flat_map(|_| common::packet(&mut rng, &primitives)).collect()
+        };
         hits += compare(&primitives, &rays.iter().collect(), seed);
     }
     let rays = scenes * per_scene;
-    println!("{scenes} scenes, {rays} rays, {hits} hits, each by 3 trees, 2 walks, every instruction set");
+    println!("{scenes} scenes, {rays} rays, {hits} hits, each by 3 trees, 3 walks, every instruction set");
     assert!(hits as u64 > rays / 10, "the rays should hit something: {hits} of {rays}");
 }

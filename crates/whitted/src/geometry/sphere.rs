@@ -50,14 +50,37 @@ impl SphereRay {
     }
 }
 
-/// Intersect one line with as many spheres as there are lanes; return the parameters where it enters and leaves.
+/// Rays prepared for spheres, one per lane, or one ray in all lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct SphereRays<F> {
+    /// See [`SphereRay::origin`].
+    pub origin: [F; 3],
+    /// See [`SphereRay::direction`].
+    pub direction: [F; 3],
+    /// See [`SphereRay::inverse_length_squared`].
+    pub inverse_length_squared: F,
+}
+
+impl<F: F32Lanes> SphereRays<F> {
+    /// The same ray in all lanes.
+    #[inline(always)]
+    pub(crate) fn splat(token: F::Token, ray: &SphereRay) -> Self {
+        Self {
+            origin: splat(token, ray.origin),
+            direction: splat(token, ray.direction),
+            inverse_length_squared: F::splat(token, ray.inverse_length_squared),
+        }
+    }
+}
+
+/// Intersect a line with a sphere in each lane; return the parameters where it enters and leaves.
 ///
 /// Both are NaN where the line passes by, or anything is NaN.
 #[inline(always)]
-pub(crate) fn roots<F: F32Lanes>(token: F::Token, ray: &SphereRay, center: [F; 3], radius_squared: F) -> (F, F) {
-    let direction = Vec3::from(splat(token, ray.direction));
-    let inverse = F::splat(token, ray.inverse_length_squared);
-    let from_center = Vec3::from(splat(token, ray.origin)) - Vec3::from(center);
+pub(crate) fn roots<F: F32Lanes>(rays: &SphereRays<F>, center: [F; 3], radius_squared: F) -> (F, F) {
+    let direction = Vec3::from(rays.direction);
+    let inverse = rays.inverse_length_squared;
+    let from_center = Vec3::from(rays.origin) - Vec3::from(center);
     // Walk to the point of the line that is nearest to the centre.
     let middle = -(from_center.dot(direction)) * inverse;
     let nearest = from_center + direction * middle;

@@ -100,19 +100,35 @@ fn sheared<F: F32Lanes>(vertex: [F; 3], origin: [F; 3], shear: [F; 3]) -> [F; 3]
     [(-shear[0]).fma(z, vertex[0] - origin[0]), (-shear[1]).fma(z, vertex[1] - origin[1]), z]
 }
 
-/// Intersect one ray with as many triangles as there are lanes; return the hit lanes' mask and t.
+/// Rays prepared for triangles, one per lane, or one ray in all lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct ShearedRays<F> {
+    /// See [`ShearedRay::origin`].
+    pub origin: [F; 3],
+    /// See [`ShearedRay::shear`].
+    pub shear: [F; 3],
+}
+
+impl<F: F32Lanes> ShearedRays<F> {
+    /// The same ray in all lanes.
+    #[inline(always)]
+    pub(crate) fn splat(token: F::Token, ray: &ShearedRay) -> Self {
+        Self { origin: splat(token, ray.origin), shear: splat(token, ray.shear) }
+    }
+}
+
+/// Intersect a ray with a triangle in each lane; return the hit lanes' mask and t.
 ///
 /// `vertices[i][axis]` are the renamed coordinates of vertex `i`. Lanes hit where `t_min ≤ t ≤ t_max`.
 #[inline(always)]
 pub(crate) fn intersect<F: F32Lanes>(
     token: F::Token,
-    ray: &ShearedRay,
+    rays: &ShearedRays<F>,
     vertices: [[F; 3]; 3],
     t_min: F,
     t_max: F,
 ) -> (F::Mask, F) {
-    let origin = splat(token, ray.origin);
-    let shear = splat(token, ray.shear);
+    let ShearedRays { origin, shear } = *rays;
     // Move and shear the vertices.
     let a = sheared(vertices[0], origin, shear);
     let b = sheared(vertices[1], origin, shear);

@@ -4,8 +4,8 @@ use super::goal::Goal;
 use super::query::Counts;
 use super::walk::PreparedRays;
 use super::{Tree, walk};
-use crate::geometry::sphere::{self, SphereRay};
-use crate::geometry::triangle::{self, renamed};
+use crate::geometry::sphere::{self, SphereRay, SphereRays};
+use crate::geometry::triangle::{self, ShearedRays, renamed};
 use crate::geometry::{Crossings, Kind, Primitives, ShearedRay};
 use crate::ray::{Ray, RayBatch};
 use simd::{F32Lanes, Scalar, ScalarF32};
@@ -64,14 +64,15 @@ impl OneRay {
             Kind::Triangle(i) => {
                 let axes = renamed(self.sheared.axis as usize);
                 let vertices = primitives.triangle(i).vertices.map(|p| axes.map(|axis| lane(p[axis] * self.scale)));
-                let (hit, t) = triangle::intersect(Scalar, &self.sheared, vertices, t_min, t_max);
+                let (hit, t) =
+                    triangle::intersect(Scalar, &ShearedRays::splat(Scalar, &self.sheared), vertices, t_min, t_max);
                 crossings(&[One::select(hit, t, lane(f32::NAN))])
             }
             Kind::Sphere(i) => {
                 let sphere = primitives.spheres()[i];
                 let center = sphere.center.to_array().map(|c| lane(c * self.scale));
                 let radius = lane(sphere.radius * self.scale);
-                let (near, far) = sphere::roots(Scalar, &self.sphere, center, radius * radius);
+                let (near, far) = sphere::roots(&SphereRays::splat(Scalar, &self.sphere), center, radius * radius);
                 crossings(&[near, far])
             }
             Kind::Shape(i) => primitives.shapes()[i].crossings(self.ray.origin.to_f64(), self.ray.direction.to_f64()),

@@ -2,6 +2,7 @@
 
 use super::BitSet;
 use crate::ray::NONE;
+use simd::{F32Lanes, MaskLanes, U32Lanes};
 
 /// Receives every candidate that a walk finds and says how far the ray still has to be followed.
 pub(crate) trait Goal {
@@ -11,6 +12,45 @@ pub(crate) trait Goal {
     /// A primitive is hit at `t`, within the ray's range, `limit` being its upper end so far. Returns the new limit if
     /// the range shrinks; negative infinity ends the ray.
     fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32>;
+
+    /// Sixteen consecutive rays from `first` on meet one primitive where `hit` is set; returns their new limits.
+    #[inline(always)]
+    fn offer_row<F: F32Lanes<Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>>(
+        &mut self,
+        token: F::Token,
+        first: usize,
+        hit: F::Mask,
+        t: F,
+        primitive: u32,
+        limit: F,
+    ) -> F {
+        offer_each(self, token, first, hit, t, primitive, limit)
+    }
+}
+
+/// [`Goal::offer`] for each lane that hit.
+#[inline(always)]
+fn offer_each<F: F32Lanes<Array = [f32; 16]>, G: Goal + ?Sized>(
+    goal: &mut G,
+    token: F::Token,
+    first: usize,
+    hit: F::Mask,
+    t: F,
+    primitive: u32,
+    limit: F,
+) -> F {
+    let (mut ts, mut limits) = ([0.0; 16], [0.0; 16]);
+    t.store(&mut ts);
+    limit.store(&mut limits);
+    let mut bits = hit.bits();
+    while bits != 0 {
+        let lane = bits.trailing_zeros() as usize % 16;
+        bits &= bits - 1;
+        if let Some(shorter) = goal.offer(first + lane, ts[lane], primitive, limits[lane]) {
+            limits[lane] = shorter;
+        }
+    }
+    F::load(token, &limits)
 }
 
 /// The hit with the smallest (t, primitive).
@@ -27,6 +67,24 @@ impl Goal for Closest<'_> {
             self.primitive[ray] = primitive;
             t
         })
+    }
+
+    #[inline(always)]
+    fn offer_row<F: F32Lanes<Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>>(
+        &mut self,
+        token: F::Token,
+        first: usize,
+        hit: F::Mask,
+        t: F,
+        primitive: u32,
+        limit: F,
+    ) -> F {
+        let row = &mut self.primitive[first..first + 16];
+        let best = F::U32::load_slice(token, row);
+        let primitive = F::U32::splat(token, primitive);
+        let better = hit & (t.lt(limit) | (t.eq(limit) & primitive.lt(best)));
+        F::U32::select(better, primitive, best).store_slice(row);
+        F::select(better, t, limit)
     }
 }
 

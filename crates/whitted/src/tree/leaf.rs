@@ -2,8 +2,8 @@
 
 use super::goal::Goal;
 use super::wide::on_huge_pages;
-use crate::geometry::sphere::{self, SphereRay};
-use crate::geometry::triangle::{self, renamed};
+use crate::geometry::sphere::{self, SphereRay, SphereRays};
+use crate::geometry::triangle::{self, ShearedRays, renamed};
 use crate::geometry::{Primitives, ShearedRay};
 use crate::ray::NONE;
 use simd::{F32Lanes, MaskLanes, Simd};
@@ -117,8 +117,22 @@ impl TriangleBlock {
         Self { rows, primitive: padded_ids(ids) }
     }
 
+    /// Renamed coordinates of one vertex of one triangle.
     #[inline(always)]
-    fn vertex<S: Simd>(&self, token: S, vertex: usize, [x, y, z]: [usize; 3]) -> [S::F32x8; 3] {
+    pub(super) fn corner(&self, vertex: usize, lane: usize, [x, y, z]: [usize; 3]) -> [f32; 3] {
+        let rows = &self.rows[3 * vertex..3 * vertex + 3];
+        [rows[x][lane], rows[y][lane], rows[z][lane]]
+    }
+
+    /// The triangle in a lane.
+    #[inline(always)]
+    pub(super) fn primitive(&self, lane: usize) -> u32 {
+        self.primitive[lane]
+    }
+
+    /// Renamed coordinates of one vertex of all triangles.
+    #[inline(always)]
+    pub(super) fn vertex<S: Simd>(&self, token: S, vertex: usize, [x, y, z]: [usize; 3]) -> [S::F32x8; 3] {
         let rows = &self.rows[3 * vertex..3 * vertex + 3];
         [S::F32x8::load(token, &rows[x]), S::F32x8::load(token, &rows[y]), S::F32x8::load(token, &rows[z])]
     }
@@ -137,7 +151,7 @@ impl TriangleBlock {
         let axes = renamed((ray.axis % 3) as usize);
         let vertices = [self.vertex(token, 0, axes), self.vertex(token, 1, axes), self.vertex(token, 2, axes)];
         let (t_min, t_max) = (S::F32x8::splat(token, t_min), S::F32x8::splat(token, *limit));
-        let (hit, t) = triangle::intersect(token, ray, vertices, t_min, t_max);
+        let (hit, t) = triangle::intersect(token, &ShearedRays::splat(token, ray), vertices, t_min, t_max);
         offer_lanes(goal, index, hit.bits(), t, &self.primitive, limit);
     }
 }
@@ -157,6 +171,32 @@ impl SphereBlock {
         block
     }
 
+    /// Centre of the sphere in a lane.
+    #[inline(always)]
+    pub(super) fn center(&self, lane: usize) -> [f32; 3] {
+        [self.center[0][lane], self.center[1][lane], self.center[2][lane]]
+    }
+
+    /// Squared radius of the sphere in a lane.
+    #[inline(always)]
+    pub(super) fn radius_squared(&self, lane: usize) -> f32 {
+        self.radius_squared[lane]
+    }
+
+    /// The sphere in a lane.
+    #[inline(always)]
+    pub(super) fn primitive(&self, lane: usize) -> u32 {
+        self.primitive[lane]
+    }
+
+    /// Centres and squared radii of all spheres.
+    #[inline(always)]
+    pub(super) fn rows<S: Simd>(&self, token: S) -> ([S::F32x8; 3], S::F32x8) {
+        let [x, y, z] = &self.center;
+        let center = [S::F32x8::load(token, x), S::F32x8::load(token, y), S::F32x8::load(token, z)];
+        (center, S::F32x8::load(token, &self.radius_squared))
+    }
+
     /// Offer the spheres that `ray` hits.
     #[inline(always)]
     pub(super) fn intersect<S: Simd, G: Goal>(
@@ -168,11 +208,9 @@ impl SphereBlock {
         t_min: f32,
         limit: &mut f32,
     ) {
-        let [x, y, z] = &self.center;
-        let center = [S::F32x8::load(token, x), S::F32x8::load(token, y), S::F32x8::load(token, z)];
-        let radius_squared = S::F32x8::load(token, &self.radius_squared);
+        let (center, radius_squared) = self.rows(token);
         let (t_min, t_max) = (S::F32x8::splat(token, t_min), S::F32x8::splat(token, *limit));
-        let roots = sphere::roots(token, ray, center, radius_squared);
+        let roots = sphere::roots(&SphereRays::splat(token, ray), center, radius_squared);
         let (hit, t) = sphere::first_in_range(roots, t_min, t_max);
         offer_lanes(goal, index, hit.bits(), t, &self.primitive, limit);
         if G::EVERY_CROSSING {

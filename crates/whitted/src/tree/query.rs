@@ -124,7 +124,16 @@ impl Query<'_> {
             TreeKind::None => brute_force::walk(self.tree, self.primitives, rays, first, prepared, goal),
             _ => {
                 let (tree, primitives) = (self.tree, self.primitives);
-                let kernel = walk::Walk { tree, primitives, kind: self.walk, rays: prepared, lists, goal };
+                let kernel = walk::Walk {
+                    tree,
+                    primitives,
+                    kind: self.walk,
+                    batch: rays,
+                    start: first,
+                    rays: prepared,
+                    lists,
+                    goal,
+                };
                 simd::dispatch(self.level, kernel)
             }
         };

@@ -21,6 +21,9 @@ const PADDING: f32 = 128.0 / (1 << 24) as f32;
 /// See [`PADDING`].
 const ERROR: f32 = 32.0 / (1 << 24) as f32;
 
+/// [`ERROR`], and the rounding of slopes and plane distances: eight operations of half an ulp on either side.
+const PACKET_ERROR: f32 = 40.0 / (1 << 24) as f32;
+
 /// A node: the boxes of 16 children as rows, nine cache lines.
 ///
 /// The first six lines and the children are read by every step, one row of `order` by steps that sort.
@@ -227,6 +230,16 @@ impl Tree {
         let splat_error = F::splat(token, ERROR);
         let covered = F::splat(token, (PADDING - ERROR) * self.max_coordinate);
         (splat_error * distance - covered).max(F::splat(token, 0.0))
+    }
+
+    /// As [`slack`](Self::slack) for the planes around a packet, whose own slopes are rounded.
+    pub(super) fn packet_slack(&self, distance: f32) -> f32 {
+        (self.primitive_slack(distance) - PADDING * self.max_coordinate).max(0.0)
+    }
+
+    /// How far outside a primitive a packet's ray from `distance` away may find it.
+    pub(super) fn primitive_slack(&self, distance: f32) -> f32 {
+        PACKET_ERROR * (distance + self.max_coordinate)
     }
 
     /// Levels of nodes below and including the root: bounds every stack of a walk.

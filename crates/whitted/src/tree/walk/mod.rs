@@ -2,6 +2,7 @@
 //!
 //! All are generic over the instruction set and over the [`Goal`], and all offer the same candidates.
 
+mod frustum;
 mod prepared;
 mod single;
 mod slabs;
@@ -15,6 +16,7 @@ use super::leaf::LeafKind;
 use super::query::Counts;
 use super::{Tree, WalkKind};
 use crate::geometry::{Crossings, Primitives};
+use crate::ray::RayBatch;
 use simd::{Kernel, Simd};
 
 /// One chunk of rays on its way through a tree: the kernel that is dispatched.
@@ -22,6 +24,9 @@ pub(super) struct Walk<'a, G> {
     pub tree: &'a Tree,
     pub primitives: &'a Primitives,
     pub kind: WalkKind,
+    /// The rays as the caller gave them: those of this chunk begin at `start`.
+    pub batch: &'a RayBatch,
+    pub start: usize,
     pub rays: &'a mut PreparedRays,
     pub lists: &'a mut Lists,
     pub goal: &'a mut G,
@@ -33,6 +38,9 @@ impl<G: Goal> Kernel for Walk<'_, G> {
     #[inline(always)]
     fn run<S: Simd>(mut self, token: S) -> Counts {
         let mut counts = Counts::default();
+        if self.kind == WalkKind::Auto {
+            self.packets(token, &mut counts);
+        }
         match self.kind {
             WalkKind::Auto | WalkKind::Stream if self.rays.any_slack() => {
                 stream::walk::<S, G, true>(token, &mut self, &mut counts);
@@ -51,6 +59,31 @@ impl<G: Goal> Kernel for Walk<'_, G> {
 }
 
 impl<G: Goal> Walk<'_, G> {
+    /// Walk what makes packets; the rest stays for the stream.
+    #[inline(always)]
+    fn packets<S: Simd>(&mut self, token: S, counts: &mut Counts) {
+        // A packet offers each primitive once, and shapes are not its business.
+        if G::EVERY_CROSSING || !self.primitives.shapes().is_empty() {
+            return;
+        }
+        let mut stack = std::mem::take(&mut self.lists.stack);
+        for first in (0..self.rays.len()).step_by(frustum::PACKET) {
+            let full = first + frustum::PACKET <= self.rays.len();
+            if full && frustum::walk(token, self, &mut stack, first, counts) {
+                self.rays.octant[first..first + frustum::PACKET].fill(stream::DONE);
+            }
+        }
+        self.lists.stack = stack;
+    }
+
+    /// The axis along which a ray runs mostly.
+    fn axis(&self, index: usize) -> usize {
+        let inverse = crate::math::Vec3::from(self.rays.nodes[index].inverse).abs();
+        // The largest component has the smallest reciprocal.
+        let y_below_x = usize::from(inverse.y < inverse.x);
+        if inverse.z < inverse.x.min(inverse.y) { 2 } else { y_below_x }
+    }
+
     /// Test one ray against the blocks of a leaf.
     #[inline(always)]
     fn leaf<S: Simd>(

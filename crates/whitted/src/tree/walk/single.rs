@@ -11,14 +11,14 @@ use simd::Simd;
 /// Children that wait to be visited, nearest last, with the parameter where the ray enters them.
 #[derive(Debug, Default)]
 pub(super) struct Stack {
-    entry: Vec<f32>,
-    child: Vec<u32>,
+    pub(super) entry: Vec<f32>,
+    pub(super) child: Vec<u32>,
 }
 
 impl Stack {
     /// Make room for any walk through a tree of `depth` levels: each level leaves at most 15 children behind and the
     /// last one stores whole registers.
-    fn reserve(&mut self, depth: usize) {
+    pub(super) fn reserve(&mut self, depth: usize) {
         let len = depth * (WIDTH - 1) + 2 * WIDTH;
         if self.entry.len() < len {
             self.entry.resize(len, 0.0);

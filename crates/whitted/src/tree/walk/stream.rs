@@ -22,6 +22,9 @@ const MIN_LIST: usize = 4;
 /// What `append_matching` may overwrite beyond a list.
 const SPARE: usize = 32;
 
+/// Stands for the octant of a ray that needs no walk any more.
+pub(super) const DONE: u8 = u8::MAX;
+
 /// Memory of the walk.
 #[derive(Debug, Default)]
 pub(in crate::tree) struct Lists {
@@ -49,7 +52,7 @@ pub(super) fn walk<S: Simd, G: Goal, const SLACK: bool>(token: S, walk: &mut Wal
         bucket.clear();
     }
     for (index, (ray, &octant)) in walk.rays.nodes.iter().zip(&walk.rays.octant).enumerate() {
-        if ray.limit >= ray.t_min {
+        if octant != DONE && ray.limit >= ray.t_min {
             lists.octants[octant as usize & 7].push(index as u16);
         }
     }
