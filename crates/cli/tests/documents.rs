@@ -19,6 +19,8 @@ fn check(scene: &Path) {
 fn scenes_in_documents_are_right() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents");
     fs::create_dir_all(&folder).unwrap();
+    // The mesh of an example.
+    fs::write(folder.join("example.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     for document in ["README.md", "docs/scene-format.md"] {
         let text = fs::read_to_string(repository().join(document)).unwrap();
         let scenes: Vec<&str> = text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();

@@ -324,20 +324,3 @@ fn the_published_schema_is_current() {
     let published = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(published == schema, "docs/scene.schema.json is stale: run this test with WHITTED_BLESS=1");
 }
-
-/// The examples of the documentation are scenes.
-#[test]
-fn documented_examples_load() {
-    let text = std::fs::read_to_string(repository().join("docs/scene-format.md")).unwrap();
-    let folder = folder("scene-examples");
-    std::fs::write(folder.join("example.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    let examples: Vec<&str> =
-        text.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap_or_default()).collect();
-    for (number, example) in examples.iter().enumerate() {
-        let path = folder.join(format!("{number}.toml"));
-        std::fs::write(&path, example).unwrap();
-        let loaded = formats::load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"));
-        assert!(loaded.warnings.iter().all(|w| w.0.what.contains("no light")), "{:?}", loaded.warnings);
-    }
-    assert!(examples.len() >= 8, "one for each section");
-}
