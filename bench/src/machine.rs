@@ -9,7 +9,8 @@ pub(crate) fn cpu() -> String {
     line.and_then(|line| line.split_once(':')).map_or("unknown CPU".into(), |(_, name)| name.trim().into())
 }
 
-/// The commit that is checked out, with `+` if files differ from it; "unknown" outside a checkout.
+/// The commit that is checked out in the current folder, with `+` if files differ from it; "unknown" outside a checkout.
+/// It is that of this program if `cargo run` started it.
 pub(crate) fn commit() -> String {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").args(arguments).output().ok().filter(|output| output.status.success())?;

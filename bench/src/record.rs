@@ -1,5 +1,6 @@
 //! `record`: measures everything and keeps it in `bench/record/`, as JSON for programs and as tables for people.
 
+use crate::embree::EmbreeError;
 use crate::options::{EmbreeOptions, OurOptions, SceneOptions};
 use crate::{builds, machine, pictures, rays};
 use clap::Args;
@@ -47,13 +48,20 @@ pub(crate) fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let pictures = pictures::run(&pictures::Options::new(scenes.shared.clone()))?;
     let level = ours.level().name();
     let record = json!({
-        "date": date, "cpu": cpu, "commit": commit, "level": level, "embree_isa": embree.embree_isa,
+        "date": date, "cpu": cpu, "commit": commit, "level": level, "passes": passes, "max_rays": max_rays,
+        "embree": version(embree)?, "embree_isa": embree.embree_isa,
         "rays": rays, "build": build, "pictures": pictures,
     });
     std::fs::write(base.with_extension("json"), format!("{record:#}\n"))?;
     std::fs::write(base.with_extension("md"), page(&record))?;
     println!("written to {}.json and .md", base.display());
     Ok(())
+}
+
+/// Embree's version; `None` without it.
+fn version(options: &EmbreeOptions) -> Result<Option<String>, EmbreeError> {
+    let Some(embree) = options.load()? else { return Ok(None) };
+    Ok(Some(embree.device(1, None)?.version()))
 }
 
 /// Lower-case letters, digits and single hyphens.
@@ -65,8 +73,12 @@ fn slug(text: &str) -> String {
 fn page(record: &Value) -> String {
     let word = |key: &str| record[key].as_str().unwrap_or("-");
     let mut out = format!("# {}, {}, commit {}\n\n", word("date"), word("cpu"), word("commit"));
-    let isa = record["embree_isa"].as_str().map_or(String::new(), |isa| format!(", Embree limited to {isa}"));
-    out += &format!("Ours: {}{isa}. Taken by `cargo run --release -p whitted-bench -- record`.\n\n", word("level"));
+    let isa = record["embree_isa"].as_str().map_or(String::new(), |isa| format!(" limited to {isa}"));
+    let peer = record["embree"].as_str().map_or("no Embree".into(), |version| format!("Embree {version}{isa}"));
+    let thinned = record["max_rays"].as_u64().map_or(String::new(), |n| format!(", at most {n} rays of each set"));
+    let (ours, passes) = (word("level"), &record["passes"]);
+    out += &format!("Ours: {ours}; {peer}; median of {passes} passes{thinned}. ");
+    out += "Taken by `cargo run --release -p whitted-bench -- record`.\n\n";
     let sections =
         [("rays", rays_section as fn(&[Value]) -> String), ("build", build_section), ("pictures", pictures_section)];
     for (key, section) in sections {
