@@ -130,6 +130,16 @@ fn a_part_is_cut_from_the_whole() {
 }
 
 #[test]
+fn a_part_beside_the_picture_is_empty() {
+    let prepared = prepare(&random_scene(1), TreeKind::Best);
+    for rect in [PixelRect { x: 61, y: 3, width: 5, height: 5 }, PixelRect { x: 9, y: 9, width: 0, height: 4 }] {
+        let part =
+            render_rect(&prepared, &settings(2), &Execution::default(), &rect, &Silent, &Cancel::new(), &Unwatched);
+        assert!(part.expect("not cancelled").image.pixels.is_empty());
+    }
+}
+
+#[test]
 fn a_cancelled_render_stops() {
     let cancel = Cancel::new();
     cancel.cancel();

@@ -50,9 +50,18 @@ impl FirstPass {
 
     /// Fill in the samples of a region, given row by row.
     pub(super) fn set(&mut self, region: &PixelRect, samples: &[FirstSample]) {
-        for (pixel, sample) in region.pixels().zip(samples) {
-            let index = self.rect.index(pixel);
-            self.samples[index] = *sample;
+        for (y, row) in samples.chunks_exact(region.width as usize).enumerate() {
+            let start = self.rect.index([region.x, region.y + y as u32]);
+            self.samples[start..start + row.len()].copy_from_slice(row);
         }
+    }
+
+    /// The samples of `rect`, which lies in the rectangle, row by row.
+    pub(super) fn part(&self, rect: &PixelRect) -> Vec<FirstSample> {
+        let row = |y| {
+            let start = self.rect.index([rect.x, y]);
+            &self.samples[start..start + rect.width as usize]
+        };
+        (rect.y..rect.y + rect.height).flat_map(row).copied().collect()
     }
 }

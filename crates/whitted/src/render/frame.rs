@@ -51,7 +51,7 @@ pub fn render(
 
 /// Render the part of the picture that lies in `rect`, and tell `probe` what is being done.
 ///
-/// The pixels are those of the whole picture.
+/// The pixels are those of the whole picture. What of `rect` lies outside it is left out.
 ///
 /// # Errors
 /// If `cancel` was set before the picture was finished.
@@ -65,6 +65,10 @@ pub fn render_rect<P: Probe>(
     probe: &P,
 ) -> Result<Frame, Cancelled> {
     let rect = rect.intersection(&PixelRect::whole(settings.size));
+    if rect.is_empty() {
+        let nothing = FirstPass::new(PixelRect::EMPTY);
+        return Ok(Frame::of(&nothing, rect, Statistics::default(), Statistics::default()));
+    }
     let job = Job {
         context: Context::new(prepared, settings, execution, cancel),
         rule: EdgeRule::new(settings),
@@ -159,7 +163,7 @@ impl<P: Probe> Job<'_, P> {
 impl Frame {
     /// The frame after the first pass.
     fn of(pass: &FirstPass, rect: PixelRect, statistics: Statistics, apron: Statistics) -> Self {
-        let first: Vec<FirstSample> = rect.pixels().map(|pixel| *pass.get(pixel)).collect();
+        let first = pass.part(&rect);
         let pixels = first.iter().map(|sample| sample.color).collect();
         let image = Image { width: rect.width, height: rect.height, pixels };
         Self { rect, image, supersampled: vec![false; first.len()], first, statistics, apron }

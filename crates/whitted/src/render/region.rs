@@ -31,11 +31,15 @@ impl PixelRect {
         self.width == 0 || self.height == 0
     }
 
-    /// The pixels that both have; empty if there are none.
+    /// The rectangle without pixels.
+    pub const EMPTY: Self = Self { x: 0, y: 0, width: 0, height: 0 };
+
+    /// The pixels that both have; [`EMPTY`](Self::EMPTY) if there are none.
     pub fn intersection(&self, other: &Self) -> Self {
         let (x, width) = common(self.x, self.width, other.x, other.width);
         let (y, height) = common(self.y, self.height, other.y, other.height);
-        Self { x, y, width, height }
+        let common = Self { x, y, width, height };
+        if common.is_empty() { Self::EMPTY } else { common }
     }
 
     /// Row by row, the coordinates of every pixel.
@@ -136,6 +140,6 @@ mod tests {
     fn far_apart_rectangles_share_nothing() {
         let a = PixelRect { x: 0, y: 0, width: 4, height: 4 };
         let b = PixelRect { x: u32::MAX, y: 2, width: u32::MAX, height: 4 };
-        assert!(a.intersection(&b).is_empty());
+        assert_eq!(a.intersection(&b), PixelRect::EMPTY);
     }
 }
