@@ -1,0 +1,78 @@
+//! Every scene of `scenes/` looks as it did when somebody last looked at it.
+//!
+//! Pictures are byte-equal on every CPU, so the tolerance is zero. After an intended change, run this test with
+//! `WHITTED_BLESS=1`, look at the new pictures, and give the reason in the commit.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Small enough to be kept in the repository, large enough to show what is wrong.
+const SIZE: [usize; 2] = [192, 144];
+
+fn scenes() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
+}
+
+fn decode(png: &[u8]) -> Vec<u8> {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
+    assert_eq!([reader.info().width as usize, reader.info().height as usize], SIZE);
+    let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut rgb).unwrap();
+    rgb
+}
+
+fn encode(rgb: &[u8]) -> Vec<u8> {
+    formats::png::encode(SIZE[0] as u32, SIZE[1] as u32, rgb).unwrap()
+}
+
+/// Renders a scene as its reader would, but small.
+fn render(scene: &Path) -> Vec<u8> {
+    let [width, height] = SIZE;
+    let mut command = Command::new(env!("CARGO_BIN_EXE_whitted"));
+    command.arg("render").arg(scene).args(["-q", "-o", "-", "--aa-max", "4", "--size", &format!("{width}x{height}")]);
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}: {}", scene.display(), String::from_utf8_lossy(&output.stderr));
+    output.stdout
+}
+
+/// Leaves the picture and its difference where a person can look at them, and says how they differ.
+fn report(name: &str, actual: &[u8], golden: &[u8]) -> String {
+    let differences: Vec<u8> = actual.iter().zip(golden).map(|(a, b)| a.abs_diff(*b)).collect();
+    let pixels = differences.chunks(3).filter(|pixel| pixel.iter().any(|&d| d > 0)).count();
+    let largest = differences.iter().max().copied().unwrap_or(0);
+    let shown: Vec<u8> = differences.iter().map(|d| d.saturating_mul(16)).collect();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let files = [("actual", actual), ("difference-16x", &shown)].map(|(kind, rgb)| {
+        let file = folder.join(format!("{name}-{kind}.png"));
+        fs::write(&file, encode(rgb)).unwrap();
+        file.display().to_string()
+    });
+    format!("{name}: {pixels} pixels differ, by at most {largest}/255; see {}", files.join(" and "))
+}
+
+#[test]
+fn scenes_look_as_they_did() {
+    let bless = std::env::var_os("WHITTED_BLESS").is_some();
+    let mut complaints = Vec::new();
+    for entry in fs::read_dir(scenes()).unwrap() {
+        let scene = entry.unwrap().path();
+        if scene.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let name = scene.file_stem().unwrap().to_string_lossy().into_owned();
+        let golden = scenes().join("golden").join(format!("{name}.png"));
+        let actual = render(&scene);
+        if bless {
+            fs::write(&golden, &actual).unwrap();
+            continue;
+        }
+        match fs::read(&golden) {
+            Ok(golden) if decode(&golden) == decode(&actual) => {}
+            Ok(golden) => complaints.push(report(&name, &decode(&actual), &decode(&golden))),
+            Err(error) => complaints.push(format!("{}: {error}", golden.display())),
+        }
+    }
+    let how = "if that was intended, run again with WHITTED_BLESS=1 and look at scenes/golden";
+    assert!(complaints.is_empty(), "{}\n{how}", complaints.join("\n"));
+}
