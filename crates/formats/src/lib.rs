@@ -29,6 +29,7 @@ mod ply;
 pub mod png;
 mod polygon;
 mod scene;
+mod smooth;
 mod source;
 mod suggest;
 mod text;
@@ -96,7 +97,7 @@ impl Format {
 }
 
 /// Load the scene or mesh in the file `path`; its extension tells the format. A scene without a camera gets what it lacks
-/// to be seen: [`Scene::furnish`].
+/// to be seen: [`Scene::furnish`]; a bare mesh without normals is shaded smoothly, but for its creases.
 ///
 /// # Errors
 /// If the file cannot be read, is wrong, uses what is not supported, or exceeds a limit of `options`.
@@ -128,6 +129,9 @@ fn read(format: Format, file: &Path, bytes: Vec<u8>, mut context: Context<'_>) -
         Format::Obj | Format::Ply => {
             let MeshFile { mut mesh, materials } = read_mesh(format, file, bytes, &mut context)?;
             mesh.name = file.to_string_lossy().into_owned();
+            if mesh.normals.is_empty() {
+                smooth::smooth(&mut mesh);
+            }
             Scene { meshes: vec![mesh], materials, ..Scene::default() }
         }
     };

@@ -77,7 +77,7 @@ fn repair_normals(mesh: &mut Mesh) {
 }
 
 /// Unit normals of the vertices: the mean of the faces around each, by area. (0, 0, 1) where there is no area.
-pub(crate) fn vertex_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
+fn vertex_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
     let mut sums = vec![Vec3d::ZERO; mesh.positions.len()];
     let point = |v: u32| Vec3::from(mesh.positions[v as usize]).to_f64();
     for &[a, b, c] in &mesh.triangles {

@@ -25,8 +25,8 @@ fn folder(name: &str) -> PathBuf {
 
 #[test]
 fn faces_become_fans_in_file_order() {
-    let mesh = mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 .5 0\nf 1 2 3 4 5\nf -1 -2 -3\n");
-    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [4, 3, 2]]);
+    let mesh = mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 .5 0\nf 1 2 3 4 5\nf -3 -2 -1\n");
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [2, 3, 4]]);
     assert_eq!(mesh.positions.len(), 5);
 }
 

@@ -17,7 +17,7 @@ const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
 
 #[test]
 fn all_encodings_give_the_same_mesh() {
-    let points: [[f32; 3]; 4] = [[0.1, 0.0, 0.0], [1.0, 1e-7, 0.0], [1.0, 1.0, 3.3], [0.0, 1.0, -2.5]];
+    let points: [[f32; 3]; 4] = [[0.1, 0.0, 0.0], [1.0, 1e-7, 0.0], [1.0, 1.0, 0.033], [0.0, 1.0, -0.025]];
     let header = |format: &str| {
         let faces = "element face 1\nproperty list ushort int vertex_indices\n";
         format!("ply\nformat {format} 1.0\nelement vertex 4\n{XYZ}{faces}end_header\n")

@@ -12,9 +12,9 @@ use super::document::Fault;
 use super::sections::{GenerateSection, Materials, MeshSection, SceneFile};
 use crate::error::{Error, ErrorKind, quoted};
 use crate::files::Context;
-use crate::mesh::{self, MeshFile};
+use crate::mesh::MeshFile;
 use crate::source::Source;
-use crate::{Format, read_mesh, suggest};
+use crate::{Format, read_mesh, smooth, suggest};
 
 /// The name of the material of things that name none.
 const DEFAULT: &str = "default";
@@ -153,7 +153,7 @@ impl Builder<'_, '_, '_> {
             }
         }
         match section.smooth {
-            Some(true) if mesh.normals.is_empty() => mesh.normals = mesh::vertex_normals(&mesh),
+            Some(true) if mesh.normals.is_empty() => smooth::smooth(&mut mesh),
             Some(false) => mesh.normals.clear(),
             _ => {}
         }

@@ -17,8 +17,8 @@ pub(in crate::scene) struct MeshSection {
     pub(in crate::scene) file: At<String>,
     /// The name of a material for the whole mesh. Default: the materials of the file; "default" if it has none.
     pub(in crate::scene) material: Option<At<String>>,
-    /// True: shade smoothly, with normals computed from the triangles if the file has none. False: shade each triangle
-    /// flat. Default: as the file says.
+    /// True: shade smoothly, with normals computed from the triangles if the file has none; edges sharper than 40 degrees
+    /// stay sharp. False: shade each triangle flat. Default: as the file says.
     pub(in crate::scene) smooth: Option<bool>,
     /// A factor about the origin, or one for each axis. Default: 1.
     scale: Option<Scale>,
