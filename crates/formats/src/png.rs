@@ -23,7 +23,7 @@ pub fn encode(width: u32, height: u32, rgb8: &[u8]) -> Result<Vec<u8>, Error> {
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-    encoder.set_compression(Compression::Balanced);
+    encoder.set_compression(Compression::Fast);
     let written = encoder.write_header().and_then(|mut writer| {
         writer.write_image_data(rgb8)?;
         writer.finish()

@@ -1,6 +1,6 @@
 //! All primitives of a scene in one number space.
 
-use super::triangle::{ERROR_ULPS, Refined};
+use super::triangle::Refined;
 use super::{Plane, Shape, Sphere, SurfacePoint, Triangle};
 use crate::math::{Aabb, Vec3f};
 use crate::ray::{Hit, Ray};
@@ -240,7 +240,8 @@ impl Primitives {
             Kind::Sphere(i) => {
                 let sphere = &self.spheres[i];
                 let (position, n_g) = sphere.surface(ray, hit.t);
-                let error = error_bound(sphere.center.abs().max_component() + sphere.radius, sphere.radius);
+                // A root is off by twice as much as a vertex: it takes a product of distances.
+                let error = error_bound(sphere.center.abs().max_component() + sphere.radius, 2.0 * sphere.radius);
                 SurfacePoint { position, n_g, n_s: n_g, uv: [0.0; 2], error }
             }
             Kind::Shape(i) => self.shapes[i].surface_point(ray, hit.t),
@@ -261,12 +262,14 @@ impl Primitives {
 
 /// The distance within which rays that start near a surface may be mistaken about their side of it.
 ///
-/// A vertex of a primitive of size `extent`, seen from a point of it, is misplaced by at most [`ERROR_ULPS`] roundings
-/// of `extent`; the point itself by half an ulp of its largest coordinate per axis, √3/2 ulp, which 2 covers together
-/// with the offset's own rounding.
+/// In units of 2⁻²⁴: a vertex of a primitive of size `extent`, seen from a point of it, is misplaced by 4 roundings of
+/// `extent` along either axis of the sheared plane, 5.7 together, and the triangle with it; the point itself by half an
+/// ulp of its largest coordinate per axis, 1.8, and its offset by as much again.
 pub(crate) fn error_bound(max_coordinate: f32, extent: f32) -> f32 {
-    const ULP: f32 = f32::EPSILON;
-    ULP * (ERROR_ULPS * extent + 2.0 * max_coordinate)
+    const UNIT: f32 = 1.0 / (1 << 24) as f32;
+    const EXTENT_UNITS: f32 = 8.0;
+    const COORDINATE_UNITS: f32 = 4.0;
+    UNIT * (EXTENT_UNITS * extent + COORDINATE_UNITS * max_coordinate)
 }
 
 fn extend_attribute<T: Copy>(all: &mut Vec<T>, first: usize, new: &[T], len: usize, none: T) {
