@@ -71,11 +71,7 @@ fn load<S: Simd>(token: S, [red, green, blue]: &[[f32; STEP]; 3]) -> Vec3<S::F32
 fn encode<F: F32Lanes>(token: F::Token, color: Vec3<F>, tone: Tone) -> Vec3<F> {
     let color = if tone == Tone::Reinhard { compressed(token, color) } else { color };
     let linear = tone == Tone::Linear;
-    Vec3::new(
-        quantized(token, color.x, linear),
-        quantized(token, color.y, linear),
-        quantized(token, color.z, linear),
-    )
+    Vec3::new(quantized(token, color.x, linear), quantized(token, color.y, linear), quantized(token, color.z, linear))
 }
 
 /// Reinhard et al. 2002, equation 3, by luminance of linear sRGB (Rec. 709).
