@@ -32,7 +32,7 @@ impl Default for Settings {
             depth: 5,
             min_weight: 1.0 / 255.0,
             antialias: Antialias::Edge,
-            antialias_max: 16,
+            antialias_max: 8,
             sampling: Sampling::Centers,
             shadows: Shadows::Filter,
             exposure: 0.0,
