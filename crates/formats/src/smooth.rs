@@ -1,6 +1,6 @@
 //! Normals for meshes whose files have none: smooth, but for creases.
 
-use whitted::math::{Vec3, Vec3f, sin_cos_degrees};
+use whitted::math::{Vec3, Vec3d, Vec3f, sin_cos_degrees};
 use whitted::scene::Mesh;
 
 /// Neighbouring faces whose normals differ by more than this many degrees meet in a crease.
@@ -17,8 +17,7 @@ pub(crate) fn smooth(mesh: &mut Mesh) {
     mesh.normals = vec![[0.0; 3]; mesh.positions.len()];
     let mut around = Vec::new();
     for vertex in 0..mesh.positions.len() {
-        around.clear();
-        around.extend(corners.of(vertex).iter().map(|&corner| (corner, faces.normal(corner, corners.of(vertex)))));
+        faces.normals(corners.of(vertex), &mut around);
         split(mesh, vertex, &around);
     }
 }
@@ -53,20 +52,37 @@ struct Faces {
     units: Vec<Vec3f>,
     /// Normals as long as twice the area, all scaled alike.
     areas: Vec<Vec3f>,
-    /// Cosine of [`CREASE`].
+    /// Cosine of [`CREASE`], and of half of it.
     crease: f32,
+    half_crease: f32,
 }
 
 impl Faces {
     fn new(mesh: &Mesh) -> Self {
         let point = |v: u32| Vec3::from(mesh.positions[v as usize]).to_f64();
-        let normal = |[a, b, c]: [u32; 3]| (point(b) - point(a)).cross(point(c) - point(a));
-        let largest = mesh.triangles.iter().map(|&t| normal(t).abs().max_component()).fold(0.0, f64::max);
-        let unit = |t: &[u32; 3]| Some(normal(*t).direction().to_f32()).filter(|n| n.is_finite());
+        let normal = |&[a, b, c]: &[u32; 3]| (point(b) - point(a)).cross(point(c) - point(a));
+        let normals: Vec<Vec3d> = mesh.triangles.iter().map(normal).collect();
+        let largest = normals.iter().map(|n| n.abs().max_component()).fold(0.0, f64::max);
+        let unit = |n: &Vec3d| Some(n.direction().to_f32()).filter(|n| n.is_finite());
         Self {
-            units: mesh.triangles.iter().map(|t| unit(t).unwrap_or(Vec3f::ZERO)).collect(),
-            areas: mesh.triangles.iter().map(|&t| (normal(t) / largest).to_f32()).collect(),
+            units: normals.iter().map(|n| unit(n).unwrap_or(Vec3f::ZERO)).collect(),
+            areas: normals.iter().map(|n| (*n / largest).to_f32()).collect(),
             crease: sin_cos_degrees(CREASE).1 as f32,
+            half_crease: sin_cos_degrees(0.5 * CREASE).1 as f32,
+        }
+    }
+
+    /// The normals of all `corners` of a vertex, with their corners.
+    fn normals(&self, corners: &[u32], normals: &mut Vec<(u32, Vec3f)>) {
+        normals.clear();
+        let Some(&first) = corners.first() else { return };
+        let unit = self.units[first as usize / 3];
+        // All near one are near each other: the case of most vertices.
+        if corners.iter().all(|&corner| unit.dot(self.units[corner as usize / 3]) > self.half_crease) {
+            let normal = self.normal(first, corners);
+            normals.extend(corners.iter().map(|&corner| (corner, normal)));
+        } else {
+            normals.extend(corners.iter().map(|&corner| (corner, self.normal(corner, corners))));
         }
     }
 
