@@ -26,7 +26,7 @@ pub(in crate::scene) struct RenderSection {
     min_weight: Option<NotNegative>,
     /// Anti-aliasing: "off", "paper", "edge", or a number of samples for every pixel. Default: "edge".
     aa: Option<Aa>,
-    /// Samples of a pixel that "paper" or "edge" refines. Default: 16.
+    /// Samples of a pixel that "paper" or "edge" refines. Default: 8.
     aa_max: Option<Samples>,
     /// Where the first sample of a pixel lies. Default: "centers".
     sampling: Option<SamplingWord>,
