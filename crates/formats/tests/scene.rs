@@ -324,3 +324,23 @@ fn the_published_schema_is_current() {
     let published = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(published == schema, "docs/scene.schema.json is stale: run this test with WHITTED_BLESS=1");
 }
+
+#[test]
+fn meshes_outside_the_folder_are_opened_only_if_allowed() {
+    let folder = folder("scene-outside");
+    std::fs::create_dir_all(folder.join("inside/deep")).unwrap();
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::fs::write(folder.join("t.obj"), mesh).unwrap();
+    std::fs::write(folder.join("inside/t.obj"), mesh).unwrap();
+    let path = folder.join("inside/t.toml");
+    let everything = LoadOptions { allow_outside: true, ..LoadOptions::default() };
+    let absolute = folder.join("t.obj").display().to_string();
+    for name in ["../t.obj", "deep/../../t.obj", "..\\\\t.obj", absolute.as_str(), "../nowhere.obj"] {
+        std::fs::write(&path, format!("version = 1\n[[mesh]]\nfile = \"{name}\"\n")).unwrap();
+        let error = formats::load(&path, &LoadOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("t.toml:3:8: the file lies outside the scene's folder"), "{name}: {error}");
+        assert_eq!(formats::load(&path, &everything).is_ok(), name != "../nowhere.obj", "{name}");
+    }
+    std::fs::write(&path, "version = 1\n[[mesh]]\nfile = \"deep/../t.obj\"\n").unwrap();
+    assert!(formats::load(&path, &LoadOptions::default()).is_ok());
+}
