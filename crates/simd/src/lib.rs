@@ -36,7 +36,7 @@ pub use dispatch::{Kernel, dispatch};
 pub use double::{ArrayF64, F64Lanes};
 pub use lanes::{F32Lanes, MaskLanes, Simd, U32Lanes};
 pub use level::Level;
-pub use memory::advise_huge_pages;
+pub use memory::{advise_huge_pages, prefetch};
 pub use scalar::{Scalar, ScalarF32, ScalarMask, ScalarU32};
 pub use vec4::Vec4;
 #[cfg(target_arch = "x86_64")]

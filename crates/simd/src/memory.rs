@@ -13,6 +13,24 @@ pub fn advise_huge_pages<T>(memory: &mut [MaybeUninit<T>]) {
     let _ = memory;
 }
 
+/// Ask the memory for all cache lines of `elements[index]`, without waiting; nothing if there is no such element.
+#[inline(always)]
+pub fn prefetch<T>(elements: &[T], index: usize) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(element) = elements.get(index) {
+        const LINE: usize = 64;
+        let start = std::ptr::from_ref(element).cast::<i8>();
+        for offset in (0..size_of::<T>()).step_by(LINE) {
+            // SAFETY: SSE is part of x86-64, and a prefetch of any address is harmless.
+            unsafe {
+                std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(start.wrapping_add(offset))
+            };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (elements, index);
+}
+
 #[cfg(target_os = "linux")]
 mod linux {
     /// The size of a huge page where it matters; a different one costs only the worth of the hint.

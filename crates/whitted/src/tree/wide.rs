@@ -242,6 +242,17 @@ impl Tree {
         PACKET_ERROR * (distance + self.max_coordinate)
     }
 
+    /// Ask the memory for what a walk will read of `child`.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, child: Child) {
+        match child.decode() {
+            ChildKind::Interior(index) => simd::prefetch(&self.nodes, index),
+            ChildKind::Leaf { kind: LeafKind::Triangles, first, .. } => simd::prefetch(&self.leaves.triangles, first),
+            ChildKind::Leaf { kind: LeafKind::Spheres, first, .. } => simd::prefetch(&self.leaves.spheres, first),
+            ChildKind::Leaf { kind: LeafKind::Shapes, .. } => {}
+        }
+    }
+
     /// Levels of nodes below and including the root: bounds every stack of a walk.
     pub(super) fn depth(&self) -> usize {
         self.report.depth

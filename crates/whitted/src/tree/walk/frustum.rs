@@ -88,7 +88,7 @@ pub(super) fn walk<S: Simd, G: Goal>(
     let mut pyramid = Pyramid::around(token, walk, &packet);
     let octant = walk.rays.octant[first] as usize & 7;
     let mut budget = BUDGET;
-    stack.reserve(walk.tree.depth());
+    stack.reserve(walk.tree.depth(), 1);
     (stack.entry[0], stack.child[0]) = (f32::NEG_INFINITY, Child::interior(0).0);
     let mut top = 1;
     while top > 0 {

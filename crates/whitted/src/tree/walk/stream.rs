@@ -16,8 +16,10 @@ use crate::tree::query::{CHUNK, Counts};
 use crate::tree::wide::{Child, ChildKind, Node, WIDTH};
 use simd::Simd;
 
-/// Lists shorter than this are walked ray by ray: a node costs more to load than it saves.
-const MIN_LIST: usize = 4;
+/// Lists shorter than this are walked ray by ray, in turns: a node costs more to load than it saves.
+const MIN_LIST: usize = 8;
+
+const _: () = assert!(MIN_LIST <= single::WAYS + 1, "a short list is walked at once");
 
 /// What `append_matching` may overwrite beyond a list.
 const SPARE: usize = 32;
@@ -81,9 +83,7 @@ fn work_off<S: Simd, G: Goal, const SLACK: bool>(
         top -= len;
         match child.decode() {
             ChildKind::Interior(_) if len < MIN_LIST => {
-                for position in top..top + len {
-                    single::walk(token, walk, &mut lists.stack, lists.ids[position] as usize, child, counts);
-                }
+                single::interleaved(token, walk, &mut lists.stack, &lists.ids[top..top + len], child, counts);
             }
             ChildKind::Interior(node) => {
                 counts.node_steps += len as u64;
