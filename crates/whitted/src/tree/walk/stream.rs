@@ -17,7 +17,7 @@ use crate::tree::wide::{Child, ChildKind, Node, WIDTH};
 use simd::Simd;
 
 /// Lists shorter than this are walked ray by ray, in turns: a node costs more to load than it saves.
-const MIN_LIST: usize = 8;
+const MIN_LIST: usize = 14;
 
 const _: () = assert!(MIN_LIST <= single::WAYS + 1, "a short list is walked at once");
 
