@@ -1,6 +1,7 @@
 //! Every scene of `scenes/` looks as it did when somebody last looked at it.
 //!
-//! Pictures are byte-equal on every CPU, so the tolerance is zero. After an intended change, run this test with
+//! Pictures are byte-equal on every CPU and with any number of threads, so the tolerance is zero, and each scene is
+//! rendered in two ways that share as little as possible. After an intended change, run this test with
 //! `WHITTED_BLESS=1`, look at the new pictures, and give the reason in the commit.
 
 use std::fs;
@@ -8,7 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Small enough to be kept in the repository, large enough to show what is wrong.
-const SIZE: [usize; 2] = [192, 144];
+const SIZE: [usize; 2] = [128, 96];
+
+/// One thread with scalar lanes, and two with the widest that the machine has.
+const WAYS: [&[&str]; 2] = [&["--simd", "scalar", "--threads", "1"], &["--threads", "2"]];
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
@@ -26,11 +30,12 @@ fn encode(rgb: &[u8]) -> Vec<u8> {
     formats::png::encode(SIZE[0] as u32, SIZE[1] as u32, rgb).unwrap()
 }
 
-/// Renders a scene as its reader would, but small.
-fn render(scene: &Path) -> Vec<u8> {
+/// Renders a scene as its reader would, but small, and in one of the [`WAYS`].
+fn render(scene: &Path, way: &[&str]) -> Vec<u8> {
     let [width, height] = SIZE;
     let mut command = Command::new(env!("CARGO_BIN_EXE_whitted"));
     command.arg("render").arg(scene).args(["-q", "-o", "-", "--aa-max", "4", "--size", &format!("{width}x{height}")]);
+    command.args(way);
     let output = command.output().unwrap();
     assert!(output.status.success(), "{}: {}", scene.display(), String::from_utf8_lossy(&output.stderr));
     output.stdout
@@ -62,15 +67,19 @@ fn scenes_look_as_they_did() {
         }
         let name = scene.file_stem().unwrap().to_string_lossy().into_owned();
         let golden = scenes().join("golden").join(format!("{name}.png"));
-        let actual = render(&scene);
+        let pictures = std::thread::scope(|scope| {
+            WAYS.map(|way| scope.spawn(|| render(&scene, way))).map(|thread| thread.join().unwrap())
+        });
         if bless {
-            fs::write(&golden, &actual).unwrap();
-            continue;
+            fs::write(&golden, &pictures[0]).unwrap();
         }
-        match fs::read(&golden) {
-            Ok(golden) if decode(&golden) == decode(&actual) => {}
-            Ok(golden) => complaints.push(report(&name, &decode(&actual), &decode(&golden))),
-            Err(error) => complaints.push(format!("{}: {error}", golden.display())),
+        let golden = fs::read(&golden).unwrap_or_else(|error| panic!("{}: {error}", golden.display()));
+        let golden = decode(&golden);
+        for (way, picture) in WAYS.iter().zip(&pictures) {
+            let actual = decode(picture);
+            if actual != golden {
+                complaints.push(format!("{}: {}", way.join(" "), report(&name, &actual, &golden)));
+            }
         }
     }
     let how = "if that was intended, run again with WHITTED_BLESS=1 and look at scenes/golden";
