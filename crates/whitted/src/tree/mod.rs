@@ -40,7 +40,8 @@ pub enum TreeKind {
 /// How rays are walked through the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum WalkKind {
-    /// The walk that suits the kind of ray.
+    /// The walk that suits the rays: packets of 64 that share an origin and an axis are bounded by a pyramid, the rest
+    /// are streamed, short lists of them ray by ray in turns.
     #[default]
     Auto,
     /// Lists of up to 4096 rays pushed through the tree together.
