@@ -1,5 +1,9 @@
 //! Rays and hits, one by one and as structures of arrays.
 
+mod view;
+
+pub use view::{Rays, Row};
+
 use crate::math::{Vec3, Vec3f};
 
 /// No primitive, no instance.

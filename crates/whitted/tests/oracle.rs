@@ -160,7 +160,7 @@ fn triangles_agree_with_rational_arithmetic() {
         let tree = Tree::build(&primitives, &TreeKind::Best.into());
         let query = Query { tree: &tree, primitives: &primitives, level: simd::Level::best(), walk: WalkKind::Auto };
         let (mut hits, mut scratch) = (HitBatch::default(), Scratch::default());
-        query.closest_hit(&[ray].iter().collect(), &mut hits, &mut scratch);
+        query.closest_hit(&ray, &mut hits, &mut scratch);
         let found = hits.get(0);
         // An exact edge belongs to the triangle.
         let agrees = found.is_hit() == (expected || f[16] == "edge");

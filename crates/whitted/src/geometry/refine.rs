@@ -7,19 +7,19 @@
 use super::triangle::Refined;
 use super::{Kind, Primitives, Sphere, Triangle};
 use crate::math::{Vec3, Vec3f};
-use crate::ray::{HitBatch, NONE, Ray, RayBatch};
+use crate::ray::{HitBatch, NONE, Ray, Rays};
 use simd::{F32Lanes, F64Lanes, Kernel, Level, Simd};
 
 /// Hits in a step.
 const STEP: usize = 8;
 
 /// Give every hit of a batch its t in double precision and its surface coordinates.
-pub(crate) fn refine(level: Level, primitives: &Primitives, rays: &RayBatch, hits: &mut HitBatch) {
+pub(crate) fn refine(level: Level, primitives: &Primitives, rays: Rays<'_>, hits: &mut HitBatch) {
     simd::dispatch(level, Refine { primitives, rays, hits });
 }
 
 /// As [`refine`], one hit after the other in plain Rust.
-pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: &RayBatch, hits: &mut HitBatch) {
+pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: Rays<'_>, hits: &mut HitBatch) {
     for index in 0..hits.len() {
         if hits.primitive[index] != NONE {
             let ray = rays.get(index);
@@ -30,7 +30,7 @@ pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: &RayBatch, hits: 
 
 struct Refine<'a> {
     primitives: &'a Primitives,
-    rays: &'a RayBatch,
+    rays: Rays<'a>,
     hits: &'a mut HitBatch,
 }
 
@@ -83,10 +83,10 @@ impl Waiting {
     }
 
     #[inline(always)]
-    fn push(&mut self, index: usize, rays: &RayBatch, points: [Vec3f; 3]) {
+    fn push(&mut self, index: usize, rays: Rays<'_>, points: [Vec3f; 3]) {
         let lane = self.len % STEP;
         self.index[lane] = index;
-        let (o, d) = (&rays.origin, &rays.direction);
+        let (o, d) = (rays.origin, rays.direction);
         let ray = [o.x[index], o.y[index], o.z[index], d.x[index], d.y[index], d.z[index]];
         for row in 0..6 {
             self.rows[row][lane] = ray[row];
@@ -109,7 +109,7 @@ impl Waiting {
 
     /// The vector twin of [`Triangle::refine`].
     #[inline(always)]
-    fn refine_triangles<S: Simd>(&mut self, token: S, rays: &RayBatch, hits: &mut HitBatch) {
+    fn refine_triangles<S: Simd>(&mut self, token: S, rays: Rays<'_>, hits: &mut HitBatch) {
         let (o, d) = (self.vector(token, 0), self.vector(token, 3));
         let (a, b, c) = (self.vector(token, 6), self.vector(token, 9), self.vector(token, 12));
         let (zero, one) = (S::F64x8::splat(token, 0.0), S::F64x8::splat(token, 1.0));
@@ -137,7 +137,7 @@ impl Waiting {
 
     /// The vector twin of [`Sphere::refine`].
     #[inline(always)]
-    fn refine_spheres<S: Simd>(&mut self, token: S, rays: &RayBatch, hits: &mut HitBatch) {
+    fn refine_spheres<S: Simd>(&mut self, token: S, rays: Rays<'_>, hits: &mut HitBatch) {
         let (d, center, radius) = (self.vector(token, 3), self.vector(token, 6), self.row(token, 9));
         let o = self.vector(token, 0) - center;
         let zero = S::F64x8::splat(token, 0.0);

@@ -7,7 +7,7 @@ use super::{Tree, walk};
 use crate::geometry::sphere::{self, SphereRay, SphereRays};
 use crate::geometry::triangle::{self, ShearedRays, renamed};
 use crate::geometry::{Crossings, Kind, Primitives, ShearedRay};
-use crate::ray::{Ray, RayBatch};
+use crate::ray::{Ray, Rays};
 use simd::{F32Lanes, Scalar, ScalarF32};
 
 type One = ScalarF32<1>;
@@ -18,7 +18,7 @@ type One = ScalarF32<1>;
 pub(super) fn walk<G: Goal>(
     tree: &Tree,
     primitives: &Primitives,
-    batch: &RayBatch,
+    batch: Rays<'_>,
     first: usize,
     ranges: &mut PreparedRays,
     goal: &mut G,

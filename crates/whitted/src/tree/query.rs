@@ -4,7 +4,7 @@ use super::goal::{Any, Closest, Goal, Next};
 use super::walk::{self, Lists, PreparedRays};
 use super::{BitSet, Occlusion, Tree, TreeKind, WalkKind, brute_force};
 use crate::geometry::{self, Primitives};
-use crate::ray::{HitBatch, RayBatch};
+use crate::ray::{HitBatch, Rays};
 use simd::Level;
 use std::ops::{AddAssign, Range};
 
@@ -51,7 +51,8 @@ impl Query<'_> {
     /// The first hit of each ray; `hits` becomes as long as `rays`.
     ///
     /// Of several primitives at the same t the one with the lowest number is reported.
-    pub fn closest_hit(&self, rays: &RayBatch, hits: &mut HitBatch, scratch: &mut Scratch) -> Counts {
+    pub fn closest_hit<'r>(&self, rays: impl Into<Rays<'r>>, hits: &mut HitBatch, scratch: &mut Scratch) -> Counts {
+        let rays = rays.into();
         hits.reset(rays.len());
         let mut counts = Counts::default();
         for chunk in chunks(rays.len()) {
@@ -70,13 +71,14 @@ impl Query<'_> {
     ///
     /// # Panics
     /// If `after` is not as long as `rays`.
-    pub fn next_hit(
+    pub fn next_hit<'r>(
         &self,
-        rays: &RayBatch,
+        rays: impl Into<Rays<'r>>,
         after: &mut [(f32, u32)],
         hits: &mut HitBatch,
         scratch: &mut Scratch,
     ) -> Counts {
+        let rays = rays.into();
         assert_eq!(after.len(), rays.len(), "one starting point for each ray");
         hits.reset(rays.len());
         let mut counts = Counts::default();
@@ -97,13 +99,14 @@ impl Query<'_> {
     ///
     /// With `opaque`, primitives outside that set do not block: a ray that touches only such is `Filtered`. Rays are
     /// never reversed.
-    pub fn occluded(
+    pub fn occluded<'r>(
         &self,
-        rays: &RayBatch,
+        rays: impl Into<Rays<'r>>,
         opaque: Option<&BitSet>,
         out: &mut Vec<Occlusion>,
         scratch: &mut Scratch,
     ) -> Counts {
+        let rays = rays.into();
         out.clear();
         out.resize(rays.len(), Occlusion::Clear);
         let mut counts = Counts::default();
@@ -115,7 +118,7 @@ impl Query<'_> {
     }
 
     /// Walk one chunk: planes first, since they lie outside the tree and shorten the rays, then the tree.
-    fn walk<G: Goal>(&self, rays: &RayBatch, chunk: Range<usize>, goal: &mut G, scratch: &mut Scratch) -> Counts {
+    fn walk<G: Goal>(&self, rays: Rays<'_>, chunk: Range<usize>, goal: &mut G, scratch: &mut Scratch) -> Counts {
         let Scratch { rays: prepared, lists } = scratch;
         let first = chunk.start;
         prepared.fill(self.level, self.tree, self.primitives, rays, chunk);
@@ -141,7 +144,7 @@ impl Query<'_> {
     }
 
     /// Give every hit its t in double precision and its surface coordinates.
-    fn refine(&self, rays: &RayBatch, hits: &mut HitBatch) {
+    fn refine(&self, rays: Rays<'_>, hits: &mut HitBatch) {
         match self.tree.kind() {
             TreeKind::None => geometry::refine_one_by_one(self.primitives, rays, hits),
             _ => geometry::refine(self.level, self.primitives, rays, hits),

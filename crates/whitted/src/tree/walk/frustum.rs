@@ -15,6 +15,7 @@ use super::single::Stack;
 use crate::geometry::sphere::{self, SphereRays};
 use crate::geometry::triangle::{self, ShearedRays, renamed};
 use crate::math::Vec3;
+use crate::ray;
 use crate::tree::goal::Goal;
 use crate::tree::leaf::{LeafKind, SphereBlock, TriangleBlock};
 use crate::tree::query::Counts;
@@ -139,7 +140,7 @@ impl Packet {
     fn new<S: Simd, G: Goal>(token: S, walk: &Walk<'_, G>, first: usize) -> Option<Self> {
         let start = walk.start + first;
         let rows = |row: &[f32]| Row(*row[start..].first_chunk().expect("a whole packet"));
-        let (o, d) = (&walk.batch.origin, &walk.batch.direction);
+        let (o, d) = (walk.batch.origin, walk.batch.direction);
         let apex = Vec3::new(o.x[start], o.y[start], o.z[start]);
         if !(same(token, &o.x[start..], apex.x)
             && same(token, &o.y[start..], apex.y)
@@ -151,9 +152,12 @@ impl Packet {
         let axis = walk.axis(first);
         let mut packet = Self {
             origin: apex * walk.tree.scale(),
-            direction: [rows(&d.x), rows(&d.y), rows(&d.z)],
+            direction: [rows(d.x), rows(d.y), rows(d.z)],
             shear: [Row([0.0; PACKET]); 3],
-            t_min: rows(&walk.batch.t_min),
+            t_min: match walk.batch.t_min {
+                ray::Row::Each(t_min) => rows(t_min),
+                ray::Row::All(t_min) => Row([t_min; PACKET]),
+            },
             limit: Row([0.0; PACKET]),
             axis,
             backward: octant >> axis & 1 != 0,

@@ -16,7 +16,7 @@ use super::leaf::LeafKind;
 use super::query::Counts;
 use super::{Tree, WalkKind};
 use crate::geometry::{Crossings, Primitives};
-use crate::ray::RayBatch;
+use crate::ray::Rays;
 use simd::{Kernel, Simd};
 
 /// One chunk of rays on its way through a tree: the kernel that is dispatched.
@@ -25,7 +25,7 @@ pub(super) struct Walk<'a, G> {
     pub primitives: &'a Primitives,
     pub kind: WalkKind,
     /// The rays as the caller gave them: those of this chunk begin at `start`.
-    pub batch: &'a RayBatch,
+    pub batch: Rays<'a>,
     pub start: usize,
     pub rays: &'a mut PreparedRays,
     pub lists: &'a mut Lists,

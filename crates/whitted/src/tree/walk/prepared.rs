@@ -3,7 +3,7 @@
 use crate::geometry::sphere::SphereRay;
 use crate::geometry::{Primitives, ShearedRay};
 use crate::math::Vec3;
-use crate::ray::{NONE, Ray, RayBatch};
+use crate::ray::{NONE, Ray, Rays, Row};
 use crate::tree::Tree;
 use simd::{F32Lanes, Kernel, Level, MaskLanes, Simd, U32Lanes};
 use std::ops::Range;
@@ -55,7 +55,7 @@ impl PreparedRays {
         level: Level,
         tree: &Tree,
         primitives: &Primitives,
-        rays: &RayBatch,
+        rays: Rays<'_>,
         range: Range<usize>,
     ) {
         self.any_slack = false;
@@ -131,7 +131,7 @@ impl PreparedRays {
 struct Fill<'a> {
     prepared: &'a mut PreparedRays,
     tree: &'a Tree,
-    rays: &'a RayBatch,
+    rays: Rays<'a>,
     range: Range<usize>,
     triangles: bool,
     spheres: bool,
@@ -149,10 +149,10 @@ impl Kernel for Fill<'_> {
         for start in range.clone().step_by(STEP) {
             let end = range.end.min(start + STEP);
             let scale = S::F32x16::splat(token, tree.scale());
-            let origin = load(token, &rays.origin, start..end) * scale;
-            let direction = load(token, &rays.direction, start..end) * scale;
-            let t_min = load_row(token, &rays.t_min, start..end);
-            let t_max = load_row(token, &rays.t_max, start..end);
+            let origin = load(token, rays.origin, start..end) * scale;
+            let direction = load(token, rays.direction, start..end) * scale;
+            let t_min = load_bound(token, rays.t_min, start..end);
+            let t_max = load_bound(token, rays.t_max, start..end);
             let count = end - start;
             prepared.push_nodes(token, tree, origin, direction, t_min, t_max, count);
             if triangles {
@@ -284,12 +284,21 @@ fn sound<F: F32Lanes>(token: F::Token, origin: Vec3<F>, direction: Vec3<F>) -> F
 }
 
 #[inline(always)]
-fn load<S: Simd>(token: S, rows: &Vec3<Vec<f32>>, range: Range<usize>) -> Vec3<S::F32x16> {
+fn load<S: Simd>(token: S, rows: Vec3<&[f32]>, range: Range<usize>) -> Vec3<S::F32x16> {
     Vec3::new(
-        load_row(token, &rows.x, range.clone()),
-        load_row(token, &rows.y, range.clone()),
-        load_row(token, &rows.z, range),
+        load_row(token, rows.x, range.clone()),
+        load_row(token, rows.y, range.clone()),
+        load_row(token, rows.z, range),
     )
+}
+
+/// A step of the ends of ranges.
+#[inline(always)]
+fn load_bound<S: Simd>(token: S, row: Row<'_, f32>, range: Range<usize>) -> S::F32x16 {
+    match row {
+        Row::Each(values) => load_row(token, values, range),
+        Row::All(value) => S::F32x16::splat(token, value),
+    }
 }
 
 /// A step of a row; lanes beyond the range are 0.
