@@ -182,6 +182,17 @@ impl Primitives {
         Triangle { vertices: self.triangles[index].map(|vertex| self.vertices[vertex as usize]) }
     }
 
+    /// The vertices of all meshes, one after the other, to be moved; a tree over them must then be
+    /// [refitted](crate::tree::Tree::refit) or built anew.
+    pub fn vertices_mut(&mut self) -> &mut [Vec3f] {
+        &mut self.vertices
+    }
+
+    /// The spheres, to be moved; see [`vertices_mut`](Self::vertices_mut).
+    pub fn spheres_mut(&mut self) -> &mut [Sphere] {
+        &mut self.spheres
+    }
+
     /// The spheres.
     pub fn spheres(&self) -> &[Sphere] {
         &self.spheres

@@ -46,6 +46,9 @@ pub(super) enum LeafKind {
     Shapes,
 }
 
+/// Blocks that one thread copies anew at least: fewer are not worth a second one.
+const MIN_UPDATE: usize = 512;
+
 /// All leaf blocks of a tree.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Leaves {
@@ -65,6 +68,20 @@ impl Leaves {
             LeafKind::Spheres => extend(&mut self.spheres, chunks.map(|c| SphereBlock::new(primitives, scale, c))),
             LeafKind::Shapes => extend(&mut self.shapes, chunks.map(|c| ShapeBlock { primitive: padded_ids(c) })),
         }
+    }
+
+    /// Copy the coordinates of all primitives anew, as they are now; those that became degenerate are never hit.
+    pub(super) fn update(&mut self, primitives: &Primitives, scale: f32) {
+        use rayon::prelude::*;
+        self.triangles.par_iter_mut().with_min_len(MIN_UPDATE).for_each(|block| {
+            *block = TriangleBlock::new(primitives, scale, used(&block.primitive));
+            let lost = lost(primitives, &block.primitive);
+            block.rows.iter_mut().for_each(|row| blot_out(row, lost));
+        });
+        self.spheres.par_iter_mut().with_min_len(MIN_UPDATE).for_each(|block| {
+            *block = SphereBlock::new(primitives, scale, used(&block.primitive));
+            blot_out(&mut block.radius_squared, lost(primitives, &block.primitive));
+        });
     }
 
     /// The primitives of `count` blocks from `first` on.
@@ -98,6 +115,25 @@ fn extend<T>(all: &mut Vec<T>, items: impl Iterator<Item = T>) -> usize {
     let first = all.len();
     all.extend(items);
     first
+}
+
+/// The numbers before the unused lanes.
+fn used(ids: &[u32; BLOCK]) -> &[u32] {
+    &ids[..ids.iter().position(|&id| id == NONE).unwrap_or(BLOCK)]
+}
+
+/// The lanes whose primitives cannot be hit any more.
+fn lost(primitives: &Primitives, ids: &[u32; BLOCK]) -> [bool; BLOCK] {
+    ids.map(|id| id != NONE && primitives.primitive_bounds(id).is_none())
+}
+
+/// Make NaN what cannot be hit.
+fn blot_out(row: &mut [f32; BLOCK], lost: [bool; BLOCK]) {
+    for (value, lost) in row.iter_mut().zip(lost) {
+        if lost {
+            *value = f32::NAN;
+        }
+    }
 }
 
 fn padded_ids(ids: &[u32]) -> [u32; BLOCK] {

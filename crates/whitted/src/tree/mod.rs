@@ -13,6 +13,7 @@ mod build;
 mod goal;
 mod leaf;
 mod query;
+mod refit;
 mod validate;
 mod walk;
 mod wide;
@@ -21,6 +22,7 @@ pub use bit_set::BitSet;
 pub use build::BuildOptions;
 pub use goal::Occlusion;
 pub use query::{Counts, Query, Scratch};
+pub use refit::RefitError;
 pub use wide::{Tree, TreeReport};
 
 /// Which splits the builder may use.

@@ -61,7 +61,8 @@ pub(super) const MAX_LEAF_BLOCKS: usize = 16;
 const MAX_BLOCK: usize = 1 << 25;
 
 impl Child {
-    const UNUSED: Self = Self(u32::MAX);
+    /// What a lane without a box holds.
+    pub(super) const UNUSED: Self = Self(u32::MAX);
 
     pub(super) const fn interior(index: usize) -> Self {
         assert!(index < 1 << 31, "node index fits 31 bits");
@@ -102,7 +103,7 @@ impl Node {
         order: [[0; WIDTH]; 8],
     };
 
-    fn set(&mut self, lane: usize, bounds: Aabb, child: Child) {
+    pub(super) fn set(&mut self, lane: usize, bounds: Aabb, child: Child) {
         for axis in 0..3 {
             self.planes[axis][lane] = bounds.lo[axis];
             self.planes[3 + axis][lane] = bounds.hi[axis];
@@ -129,7 +130,7 @@ impl Node {
     }
 
     /// Sort the lanes by the distance of their centres along each octant's diagonal, far to near, unused lanes last.
-    fn sort(&mut self) {
+    pub(super) fn sort(&mut self) {
         for octant in 0..8 {
             let key = |lane: usize| -> f32 {
                 let center = self.bounds(lane).center();
@@ -178,18 +179,17 @@ pub struct TreeReport {
 impl Tree {
     /// Build a tree. Bounded in time, memory and depth for any input; uses the current rayon pool.
     pub fn build(primitives: &Primitives, options: &BuildOptions) -> Self {
-        let bounds = primitives.bounds();
-        let scale = power_of_two_scale(bounds.max_abs());
         let mut tree = Self {
             nodes: Vec::new(),
             leaves: Leaves::default(),
             kind: options.kind,
-            scale,
-            max_coordinate: bounds.max_abs() * scale,
+            scale: 1.0,
+            max_coordinate: 0.0,
             report: TreeReport::default(),
         };
+        tree.fit_scale(primitives.bounds());
         if options.kind != TreeKind::None {
-            let binary = build::build(primitives, scale, options);
+            let binary = build::build(primitives, tree.scale, options);
             tree.report.dropped = binary.dropped;
             match &binary.root {
                 Some(root) => tree.flatten(primitives, root, &binary.references),
@@ -206,6 +206,17 @@ impl Tree {
         tree.report.nodes = tree.nodes.len();
         tree.report.bytes = size_of_val(&tree.nodes[..]) + tree.leaves.bytes();
         tree
+    }
+
+    /// Choose the scale for a scene of these bounds.
+    pub(super) fn fit_scale(&mut self, bounds: Aabb) {
+        self.scale = power_of_two_scale(bounds.max_abs());
+        self.max_coordinate = bounds.max_abs() * self.scale;
+    }
+
+    /// The box of a lane around what lies within `bounds`, in the tree's coordinates.
+    pub(super) fn padded(&self, bounds: Aabb) -> Aabb {
+        bounds.grown(PADDING * self.max_coordinate)
     }
 
     /// Which splits were allowed.
@@ -275,7 +286,7 @@ impl Tree {
             self.report.depth = self.report.depth.max(level);
             let mut node = Node::EMPTY;
             for (lane, child) in build::gather(subtree, WIDTH).into_iter().enumerate() {
-                let bounds = child.bounds().grown(PADDING * self.max_coordinate);
+                let bounds = self.padded(child.bounds());
                 let reference = match child {
                     Subtree::Leaf { kind, first, count, .. } => {
                         self.leaf(primitives, *kind, &references[*first..*first + *count])
