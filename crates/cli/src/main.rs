@@ -20,6 +20,7 @@ mod progress;
 mod render;
 mod report;
 mod settings;
+mod stopwatch;
 
 use clap::Parser;
 use std::process::ExitCode;

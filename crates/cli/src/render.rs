@@ -8,9 +8,10 @@ use crate::load::load;
 use crate::output::Target;
 use crate::progress::Display;
 use crate::report::Report;
+use crate::stopwatch::Stopwatch;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use whitted::render::{Cancel, Frame, PixelRect, Unwatched, render_rect};
+use whitted::render::{Cancel, Frame, PixelRect, render_rect};
 use whitted::scene::{Prepared, Scene};
 use whitted::tree::BuildOptions;
 
@@ -27,7 +28,11 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let prepared = timed(&mut report.build, || pool.install(|| build(&scene, arguments)))?;
     stop_if(cancel)?;
     tell_details(arguments, &scene, &prepared, pool.current_num_threads());
-    let frame = timed(&mut report.trace, || pool.install(|| trace(&prepared, rectangle, &scene, arguments, cancel)))?;
+    let watch = Stopwatch::default();
+    let frame = timed(&mut report.trace, || {
+        pool.install(|| trace(&prepared, rectangle, &scene, arguments, cancel, &watch))
+    })?;
+    report.shares = watch.shares();
     report.statistics = frame.statistics;
     report.tree = prepared.geometry().tree().report();
     timed(&mut report.write, || write(&frame, &scene, &outputs.picture, cancel))?;
@@ -91,10 +96,11 @@ fn trace(
     scene: &Scene,
     arguments: &RenderArguments,
     cancel: &Cancel,
+    watch: &Stopwatch,
 ) -> Result<Frame, Failure> {
     let display = Display::new(arguments.verbosity.quiet);
     let execution = arguments.execution.execution();
-    let frame = render_rect(prepared, &scene.settings, &execution, &rectangle, &display, cancel, &Unwatched);
+    let frame = render_rect(prepared, &scene.settings, &execution, &rectangle, &display, cancel, watch);
     display.finish();
     frame.map_err(|_cancelled| Failure::Interrupted)
 }

@@ -1,6 +1,7 @@
 //! What a render did, as text for people and as JSON for programs, with the same stable keys.
 
 use crate::args::StatsFormat;
+use crate::stopwatch::Shares;
 use std::fmt::Write;
 use std::time::Duration;
 use whitted::render::Statistics;
@@ -15,6 +16,7 @@ pub(crate) struct Report {
     pub(crate) build: Duration,
     pub(crate) trace: Duration,
     pub(crate) write: Duration,
+    pub(crate) shares: Shares,
 }
 
 /// One value of the report.
@@ -56,9 +58,15 @@ impl Report {
             ("seconds.build", Real(self.build.as_secs_f64())),
             ("seconds.trace", Real(self.trace.as_secs_f64())),
             ("seconds.write", Real(self.write.as_secs_f64())),
+            ("percent.trace", Real(self.shares.trace)),
+            ("percent.shadow", Real(self.shares.shadow)),
+            ("percent.shade", Real(self.shares.shade)),
+            ("percent.queue", Real(self.shares.queue)),
+            ("percent.refine", Real(self.shares.refine)),
             ("pixels.supersampled", Count(s.supersampled_pixels)),
             ("cut.weight", Count(s.cut_by_weight)),
             ("cut.depth", Count(s.cut_by_depth)),
+            ("cut.budget", Count(s.cut_by_budget)),
             ("peak_memory_bytes", peak_memory_bytes().map_or(Unknown, Count)),
         ]
     }

@@ -219,7 +219,8 @@ fn statistics_have_stable_keys() {
     let keys: Vec<&str> = text.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
     let expected = "rays.camera rays.shadow rays.reflected rays.refracted hits.camera tests_per_ray steps_per_ray \
                     tree.nodes tree.leaves tree.references seconds.load seconds.build seconds.trace seconds.write \
-                    pixels.supersampled cut.weight cut.depth peak_memory_bytes";
+                    percent.trace percent.shadow percent.shade percent.queue percent.refine \
+                    pixels.supersampled cut.weight cut.depth cut.budget peak_memory_bytes";
     assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
     expect(&folder, &["render", "scene.nff", "--aa", "off", "--stats", "json=stats.json"], 0, &[]);
     let json = fs::read_to_string(folder.join("stats.json")).unwrap();
