@@ -29,9 +29,8 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     stop_if(cancel)?;
     tell_details(arguments, &scene, &prepared, pool.current_num_threads());
     let watch = Stopwatch::default();
-    let frame = timed(&mut report.trace, || {
-        pool.install(|| trace(&prepared, rectangle, &scene, arguments, cancel, &watch))
-    })?;
+    let frame =
+        timed(&mut report.trace, || pool.install(|| trace(&prepared, rectangle, &scene, arguments, cancel, &watch)))?;
     report.shares = watch.shares();
     report.statistics = frame.statistics;
     report.tree = prepared.geometry().tree().report();
