@@ -37,9 +37,8 @@ impl EdgeRule {
     /// True if the pixel needs more samples. Neighbours outside `pass` do not exist.
     pub(super) fn flags(&self, pass: &FirstPass, pixel: [u32; 2]) -> bool {
         let [x, y] = pixel;
-        let here = pass.get(pixel);
-        let differs = |x: u32, y: u32, rule: fn(&Self, &FirstSample, &FirstSample) -> bool| {
-            pass.rect().contains([x, y]) && rule(self, here, pass.get([x, y]))
+        let differs = |x: u32, y: u32, rule: fn(&Self, &FirstPass, [u32; 2], [u32; 2]) -> bool| {
+            pass.rect().contains([x, y]) && rule(self, pass, pixel, [x, y])
         };
         // Wrapped coordinates are outside every picture.
         let (left, up) = (x.wrapping_sub(1), y.wrapping_sub(1));
@@ -53,12 +52,15 @@ impl EdgeRule {
         }
     }
 
-    fn object_switches(&self, a: &FirstSample, b: &FirstSample) -> bool {
-        a.object != b.object
+    fn object_switches(&self, pass: &FirstPass, a: [u32; 2], b: [u32; 2]) -> bool {
+        pass.get(a).object != pass.get(b).object
     }
 
-    fn is_edge(&self, a: &FirstSample, b: &FirstSample) -> bool {
-        self.object_switches(a, b) || bends(a, b) || jumps(a, b) || self.contrasts(a.color, b.color)
+    fn is_edge(&self, pass: &FirstPass, a: [u32; 2], b: [u32; 2]) -> bool {
+        let bends_or_jumps = |a: &FirstSample, b: &FirstSample| bends(a, b) || jumps(a, b);
+        self.object_switches(pass, a, b)
+            || bends_or_jumps(pass.get(a), pass.get(b))
+            || self.contrasts(pass.color(a), pass.color(b))
     }
 
     fn contrasts(&self, a: Vec3f, b: Vec3f) -> bool {
@@ -77,7 +79,13 @@ fn jumps(a: &FirstSample, b: &FirstSample) -> bool {
     a.depth.max(b.depth) > a.depth.min(b.depth) * DEPTH_RATIO
 }
 
-/// The pixels of `rect` that `rule` flags, row by row.
+/// The pixels of `rect` that `rule` flags, tile by tile: neighbours stay together.
 pub(super) fn flagged(rule: &EdgeRule, pass: &FirstPass, rect: &PixelRect) -> Vec<[u32; 2]> {
-    rect.pixels().filter(|&pixel| rule.flags(pass, pixel)).collect()
+    let mut flagged = Vec::new();
+    rect.for_each_in_tiles(|pixel| {
+        if rule.flags(pass, pixel) {
+            flagged.push(pixel);
+        }
+    });
+    flagged
 }

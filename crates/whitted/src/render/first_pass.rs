@@ -3,12 +3,12 @@
 use super::region::PixelRect;
 use crate::math::Vec3f;
 use crate::ray::NONE;
+use simd::advise_huge_pages;
+use std::sync::{Mutex, PoisonError};
 
 /// What the first sample of a pixel saw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstSample {
-    /// Its linear colour.
-    pub color: Vec3f,
     /// Object (mesh, sphere, shape or plane, numbered in this order), or [`NONE`].
     pub object: u32,
     /// Shading normal on the side of the viewer; zero where nothing was hit.
@@ -20,22 +20,22 @@ pub struct FirstSample {
 }
 
 impl FirstSample {
-    /// A sample that saw nothing, in black.
-    pub(super) const NOTHING: Self =
-        Self { color: Vec3f::ZERO, object: NONE, normal: Vec3f::ZERO, depth: f32::INFINITY, cut: false };
+    /// A sample that saw nothing.
+    pub(super) const NOTHING: Self = Self { object: NONE, normal: Vec3f::ZERO, depth: f32::INFINITY, cut: false };
 }
 
-/// The first samples of a rectangle of pixels.
+/// The first samples of a rectangle of pixels, row by row.
 #[derive(Debug)]
 pub(super) struct FirstPass {
     rect: PixelRect,
+    colors: Vec<Vec3f>,
     samples: Vec<FirstSample>,
 }
 
 impl FirstPass {
     /// A pass over `rect` that has seen nothing yet.
     pub(super) fn new(rect: PixelRect) -> Self {
-        Self { rect, samples: vec![FirstSample::NOTHING; rect.len()] }
+        Self { rect, colors: filled(rect.len(), Vec3f::ZERO), samples: filled(rect.len(), FirstSample::NOTHING) }
     }
 
     /// The pixels that it covers.
@@ -48,20 +48,68 @@ impl FirstPass {
         &self.samples[self.rect.index(pixel)]
     }
 
-    /// Fill in the samples of a region, given row by row.
-    pub(super) fn set(&mut self, region: &PixelRect, samples: &[FirstSample]) {
-        for (y, row) in samples.chunks_exact(region.width as usize).enumerate() {
-            let start = self.rect.index([region.x, region.y + y as u32]);
-            self.samples[start..start + row.len()].copy_from_slice(row);
-        }
+    /// The linear colour of the first sample of `pixel`, which must lie in the rectangle.
+    pub(super) fn color(&self, pixel: [u32; 2]) -> Vec3f {
+        self.colors[self.rect.index(pixel)]
     }
 
-    /// The samples of `rect`, which lies in the rectangle, row by row.
-    pub(super) fn part(&self, rect: &PixelRect) -> Vec<FirstSample> {
-        let row = |y| {
-            let start = self.rect.index([rect.x, y]);
-            &self.samples[start..start + rect.width as usize]
-        };
-        (rect.y..rect.y + rect.height).flat_map(row).copied().collect()
+    /// Open it for threads to write.
+    pub(super) fn rows(&mut self) -> PassRows<'_> {
+        // Not zero, which has no chunks: there are no rows then either.
+        let width = self.rect.width.max(1) as usize;
+        let rows = self.colors.chunks_mut(width).zip(self.samples.chunks_mut(width));
+        PassRows { rect: self.rect, rows: rows.map(|(colors, samples)| Mutex::new(Row { colors, samples })).collect() }
+    }
+
+    /// The colours and the samples of `rect`, which lies in the rectangle, row by row.
+    pub(super) fn into_part(self, rect: &PixelRect) -> (Vec<Vec3f>, Vec<FirstSample>) {
+        if self.rect == *rect {
+            return (self.colors, self.samples);
+        }
+        (cut(&self.colors, &self.rect, rect), cut(&self.samples, &self.rect, rect))
+    }
+}
+
+/// `len` copies of a value in large pages: pages of the usual size cost as much as tracing simple pictures.
+fn filled<T: Copy>(len: usize, value: T) -> Vec<T> {
+    let mut all = Vec::with_capacity(len);
+    advise_huge_pages(all.spare_capacity_mut());
+    all.resize(len, value);
+    all
+}
+
+/// The part of `all`, which covers `whole`, that covers `part`.
+fn cut<T: Copy>(all: &[T], whole: &PixelRect, part: &PixelRect) -> Vec<T> {
+    let row = |y| {
+        let start = whole.index([part.x, y]);
+        &all[start..start + part.width as usize]
+    };
+    (part.y..part.y + part.height).flat_map(row).copied().collect()
+}
+
+/// A pass that threads write, each row by one at a time.
+#[derive(Debug)]
+pub(super) struct PassRows<'a> {
+    rect: PixelRect,
+    rows: Vec<Mutex<Row<'a>>>,
+}
+
+#[derive(Debug)]
+struct Row<'a> {
+    colors: &'a mut [Vec3f],
+    samples: &'a mut [FirstSample],
+}
+
+impl PassRows<'_> {
+    /// Fill in colours and samples of `part`, which lies in the rectangle, given row by row.
+    pub(super) fn set(&self, part: &PixelRect, colors: impl Iterator<Item = Vec3f>, samples: &[FirstSample]) {
+        let (mut colors, width) = (colors, part.width as usize);
+        let left = (part.x - self.rect.x) as usize;
+        for (y, samples) in (part.y - self.rect.y..).zip(samples.chunks_exact(width)) {
+            // A panic elsewhere leaves the row usable: it holds plain numbers.
+            let mut row = self.rows[y as usize].lock().unwrap_or_else(PoisonError::into_inner);
+            row.samples[left..left + width].copy_from_slice(samples);
+            row.colors[left..left + width].iter_mut().zip(&mut colors).for_each(|(to, color)| *to = color);
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::edges::{EdgeRule, flagged};
 use super::execution::Execution;
 use super::first_pass::{FirstPass, FirstSample};
 use super::image::Image;
-use super::probe::{Probe, Unwatched};
+use super::probe::{Phase, Probe, Unwatched, watched};
 use super::progress::{Cancel, Cancelled, Progress};
 use super::region::PixelRect;
 use super::statistics::Statistics;
@@ -67,7 +67,7 @@ pub fn render_rect<P: Probe>(
     let rect = rect.intersection(&PixelRect::whole(settings.size));
     if rect.is_empty() {
         let nothing = FirstPass::new(PixelRect::EMPTY);
-        return Ok(Frame::of(&nothing, rect, Statistics::default(), Statistics::default()));
+        return Ok(Frame::of(nothing, rect, Statistics::default(), Statistics::default()));
     }
     let job = Job {
         context: Context::new(prepared, settings, execution, cancel),
@@ -77,10 +77,9 @@ pub fn render_rect<P: Probe>(
         workspaces: Workspaces::default(),
     };
     let (pass, statistics, apron) = job.first_pass(&rect)?;
-    let mut frame = Frame::of(&pass, rect, statistics, apron);
-    if !job.rule.never() {
-        job.refine(&pass, &mut frame)?;
-    }
+    let refined = if job.rule.never() { Vec::new() } else { job.refine(&pass, &rect)? };
+    let mut frame = Frame::of(pass, rect, statistics, apron);
+    refined.iter().for_each(|(pixels, statistics)| frame.refine(pixels, statistics));
     Ok(frame)
 }
 
@@ -104,41 +103,29 @@ impl<P: Probe> Job<'_, P> {
         let kind = self.context.execution.region;
         let around = rect.strips_to(&covered).into_iter().flat_map(|strip| strip.regions(kind));
         let regions: Vec<PixelRect> = rect.regions(kind).into_iter().chain(around).collect();
-        let results = self.for_each(1, &regions, |workspace, region| {
-            let samples = workspace.first_samples(&self.context, region, self.probe)?;
-            Ok((samples, workspace.take_statistics()))
-        })?;
         let mut pass = FirstPass::new(covered);
+        let rows = pass.rows();
+        let results = self.for_each(1, &regions, |workspace, region| {
+            workspace.first_samples(&self.context, region, &rows, self.probe)?;
+            Ok(workspace.take_statistics())
+        })?;
+        drop(rows);
         let (mut inside, mut apron) = (Statistics::default(), Statistics::default());
-        for (region, (samples, statistics)) in regions.iter().zip(results) {
-            pass.set(region, &samples);
-            if rect.contains([region.x, region.y]) {
-                inside += statistics;
-            } else {
-                apron += statistics;
-            }
+        for (region, statistics) in regions.iter().zip(results) {
+            let place = if rect.contains([region.x, region.y]) { &mut inside } else { &mut apron };
+            *place += statistics;
         }
         Ok((pass, inside, apron))
     }
 
-    /// More samples for the flagged pixels.
-    fn refine(&self, pass: &FirstPass, frame: &mut Frame) -> Result<(), Cancelled> {
-        let regions = frame.rect.regions(self.context.execution.region);
-        let results = self.for_each(2, &regions, |workspace, region| {
-            let pixels = flagged(&self.rule, pass, region);
+    /// More samples for the flagged pixels of `rect`: what they give, and what was done for them, region by region.
+    fn refine(&self, pass: &FirstPass, rect: &PixelRect) -> Result<Vec<(Vec<Refined>, Statistics)>, Cancelled> {
+        let regions = rect.regions(self.context.execution.region);
+        self.for_each(2, &regions, |workspace, region| {
+            let pixels = watched(self.probe, Phase::Refine, || flagged(&self.rule, pass, region));
             let refined = workspace.refine(&self.context, pass, &pixels, self.probe)?;
             Ok((refined, workspace.take_statistics()))
-        })?;
-        for (refined, statistics) in results {
-            frame.statistics += statistics;
-            frame.statistics.supersampled_pixels += refined.len() as u64;
-            for Refined { pixel, color } in refined {
-                let index = frame.rect.index(pixel);
-                frame.image.pixels[index] = color;
-                frame.supersampled[index] = true;
-            }
-        }
-        Ok(())
+        })
     }
 
     /// Do `work` for every region in parallel; results in the order of the regions.
@@ -162,10 +149,20 @@ impl<P: Probe> Job<'_, P> {
 
 impl Frame {
     /// The frame after the first pass.
-    fn of(pass: &FirstPass, rect: PixelRect, statistics: Statistics, apron: Statistics) -> Self {
-        let first = pass.part(&rect);
-        let pixels = first.iter().map(|sample| sample.color).collect();
+    fn of(pass: FirstPass, rect: PixelRect, statistics: Statistics, apron: Statistics) -> Self {
+        let (pixels, first) = pass.into_part(&rect);
         let image = Image { width: rect.width, height: rect.height, pixels };
         Self { rect, image, supersampled: vec![false; first.len()], first, statistics, apron }
+    }
+
+    /// Take over supersampled pixels.
+    fn refine(&mut self, refined: &[Refined], statistics: &Statistics) {
+        self.statistics += *statistics;
+        self.statistics.supersampled_pixels += refined.len() as u64;
+        for &Refined { pixel, color } in refined {
+            let index = self.rect.index(pixel);
+            self.image.pixels[index] = color;
+            self.supersampled[index] = true;
+        }
     }
 }

@@ -48,6 +48,28 @@ impl PixelRect {
         (y..y + height).flat_map(move |y| (x..x + width).map(move |x| [x, y]))
     }
 
+    /// Tile by tile, call `visit` with the coordinates of every pixel: rays in this order have close neighbours, and the
+    /// 64 of a tile that is not cut off make a packet.
+    pub(super) fn for_each_in_tiles(&self, mut visit: impl FnMut([u32; 2])) {
+        let (right, bottom) = (self.x + self.width, self.y + self.height);
+        for top in (self.y..bottom).step_by(TILE) {
+            for left in (self.x..right).step_by(TILE) {
+                for y in top..bottom.min(top + TILE as u32) {
+                    for x in left..right.min(left + TILE as u32) {
+                        visit([x, y]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Rectangles of at most `at_most` ≥ 1 pixels that together are this one.
+    pub(super) fn parts(&self, at_most: usize) -> Vec<Self> {
+        let at_most = at_most.min(u32::MAX as usize) as u32;
+        let width = self.width.clamp(1, at_most);
+        self.regions(Region::Rectangle(width, at_most / width))
+    }
+
     /// Position of a pixel of this rectangle in row-major order.
     pub fn index(&self, [x, y]: [u32; 2]) -> usize {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
@@ -96,6 +118,9 @@ impl PixelRect {
     }
 }
 
+/// Side of a tile in pixels.
+const TILE: usize = 8;
+
 /// Start and length of the common part of two ranges given by start and length.
 fn common(a: u32, a_len: u32, b: u32, b_len: u32) -> (u32, u32) {
     let start = a.max(b);
@@ -118,6 +143,19 @@ mod tests {
             assert!(seen.iter().all(|&times| times == 1), "{kind:?}");
         }
         assert!(PixelRect { width: 0, ..rect }.regions(Region::Frame).is_empty());
+    }
+
+    #[test]
+    fn tiles_and_parts_cover_each_pixel_once() {
+        let rect = PixelRect { x: 3, y: 5, width: 70, height: 33 };
+        for at_most in [1, 7, 64, 69, 70, 71, 4096] {
+            let mut seen = vec![0; rect.len()];
+            for part in rect.parts(at_most) {
+                assert!(part.len() <= at_most, "{part:?}");
+                part.for_each_in_tiles(|pixel| seen[rect.index(pixel)] += 1);
+            }
+            assert!(seen.iter().all(|&times| times == 1), "{at_most}");
+        }
     }
 
     #[test]

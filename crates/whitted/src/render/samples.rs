@@ -44,8 +44,8 @@ impl Samples {
         self.film.colors()
     }
 
-    /// Everything about every sample, in order.
-    pub(super) fn first_samples(&self) -> impl ExactSizeIterator<Item = FirstSample> {
-        self.film.colors().zip(&self.first).map(|(color, first)| FirstSample { color, ..*first })
+    /// What every camera ray saw, in the order of samples.
+    pub(super) fn first(&self) -> &[FirstSample] {
+        &self.first
     }
 }

@@ -32,7 +32,7 @@ pub(super) struct Wavefront {
 }
 
 impl Wavefront {
-    /// Trace the camera rays, one for each sample, and all that descends from them. The rays are consumed.
+    /// Trace the camera rays, of the samples `numbers`, and all that descends from them. The rays are consumed.
     ///
     /// # Errors
     /// If the render was cancelled; the queues are then empty.
@@ -40,10 +40,11 @@ impl Wavefront {
         &mut self,
         context: &Context,
         camera_rays: &mut RayBatch,
+        numbers: &[u32],
         samples: &mut Samples,
         probe: &P,
     ) -> Result<(), Cancelled> {
-        self.begin(camera_rays);
+        self.begin(camera_rays, numbers);
         while let Some(generation) = self.queues.iter().rposition(|queue| !queue.is_empty()) {
             if context.cancel.is_cancelled() {
                 self.queues.iter_mut().for_each(RayQueue::clear);
@@ -57,12 +58,12 @@ impl Wavefront {
         Ok(())
     }
 
-    fn begin(&mut self, camera_rays: &mut RayBatch) {
+    fn begin(&mut self, camera_rays: &mut RayBatch, numbers: &[u32]) {
         if self.queues.is_empty() {
             self.queues.push(RayQueue::default());
         }
         let queue = &mut self.queues[0];
-        queue.tags.extend((0..camera_rays.len()).map(camera_tag));
+        queue.tags.extend(numbers.iter().copied().map(camera_tag));
         std::mem::swap(&mut queue.rays, camera_rays);
         camera_rays.clear();
     }

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::execution::Method;
-use super::first_pass::{FirstPass, FirstSample};
+use super::first_pass::{FirstPass, PassRows};
 use super::jitter::{MIDDLE, PixelHash, Stratification};
 use super::media::Media;
 use super::probe::{Phase, Probe, watched};
@@ -32,6 +32,8 @@ pub(super) struct Workspace {
     wavefront: Wavefront,
     recursive: Recursive,
     samples: Samples,
+    /// Numbers of the samples of the batch in the order in which they are traced.
+    numbers: Vec<u32>,
     /// Where the samples of the batch lie in the picture, in pixels from its upper left corner.
     places: [Vec<f32>; 2],
     rays: RayBatch,
@@ -43,21 +45,23 @@ impl Workspace {
         std::mem::take(&mut self.samples.statistics)
     }
 
-    /// The first sample of every pixel of `region`, row by row.
+    /// Take the first sample of every pixel of `region` and write it to `rows`.
     pub(super) fn first_samples<P: Probe>(
         &mut self,
         context: &Context,
         region: &PixelRect,
+        rows: &PassRows,
         probe: &P,
-    ) -> Result<Vec<FirstSample>, Cancelled> {
-        let mut pixels = region.pixels();
-        let mut results = Vec::with_capacity(region.len());
-        while results.len() < region.len() {
-            self.place(pixels.by_ref().take(CHUNK).map(|pixel| (pixel, MIDDLE)));
+    ) -> Result<(), Cancelled> {
+        for part in region.parts(CHUNK) {
+            watched(probe, Phase::Queue, || {
+                self.begin();
+                part.for_each_in_tiles(|pixel| self.place(part.index(pixel) as u32, pixel, MIDDLE));
+            });
             self.trace(context, probe)?;
-            results.extend(self.samples.first_samples());
+            watched(probe, Phase::Queue, || rows.set(&part, self.samples.colors(), self.samples.first()));
         }
-        Ok(results)
+        Ok(())
     }
 
     /// The mean of all samples of each of `pixels`, the first of which is in `pass`.
@@ -79,33 +83,40 @@ impl Workspace {
             .iter()
             .enumerate()
             .flat_map(|(index, &pixel)| (1..samples).map(move |sample| (index, pixel, sample)));
-        let mut sums: Vec<Vec3d> = pixels.iter().map(|&pixel| pass.get(pixel).color.to_f64()).collect();
+        let mut sums: Vec<Vec3d> = pixels.iter().map(|&pixel| pass.color(pixel).to_f64()).collect();
         loop {
             let batch: Vec<(usize, [u32; 2], u32)> = queue.by_ref().take(CHUNK).collect();
             if batch.is_empty() {
                 break;
             }
-            self.place(
-                batch
-                    .iter()
-                    .map(|&(_, pixel, sample)| (pixel, strata.place(PixelHash::new(pixel[0], pixel[1], seed), sample))),
-            );
+            watched(probe, Phase::Refine, || {
+                self.begin();
+                for (number, &(_, pixel, sample)) in (0..).zip(&batch) {
+                    self.place(number, pixel, strata.place(PixelHash::new(pixel[0], pixel[1], seed), sample));
+                }
+            });
             self.trace(context, probe)?;
-            for (&(index, ..), color) in batch.iter().zip(self.samples.colors()) {
-                sums[index] += color.to_f64();
-            }
+            watched(probe, Phase::Refine, || {
+                for (&(index, ..), color) in batch.iter().zip(self.samples.colors()) {
+                    sums[index] += color.to_f64();
+                }
+            });
         }
         let mean = |sum: Vec3d| (sum / f64::from(samples)).to_f32();
         Ok(pixels.iter().zip(sums).map(|(&pixel, sum)| Refined { pixel, color: mean(sum) }).collect())
     }
 
-    /// Begin a batch with these samples, given by their pixel and their place in it.
-    fn place(&mut self, places: impl Iterator<Item = ([u32; 2], [f32; 2])>) {
+    /// Begin a batch.
+    fn begin(&mut self) {
         self.places.iter_mut().for_each(Vec::clear);
-        for (pixel, place) in places {
-            for axis in 0..2 {
-                self.places[axis].push(pixel[axis] as f32 + place[axis]);
-            }
+        self.numbers.clear();
+    }
+
+    /// Add sample `number` to the batch, at a place in a pixel. Numbers count from 0; they come in any order.
+    fn place(&mut self, number: u32, pixel: [u32; 2], place: [f32; 2]) {
+        self.numbers.push(number);
+        for axis in 0..2 {
+            self.places[axis].push(pixel[axis] as f32 + place[axis]);
         }
     }
 
@@ -119,20 +130,19 @@ impl Workspace {
             context.camera.fill(context.execution.level, x, y, &mut self.rays);
         });
         match context.execution.method {
-            Method::Wavefront => self.wavefront.run(context, &mut self.rays, &mut self.samples, probe),
+            Method::Wavefront => self.wavefront.run(context, &mut self.rays, &self.numbers, &mut self.samples, probe),
             Method::Recursive => {
-                let Self { recursive, rays, samples, .. } = self;
-                watched(probe, Phase::Trace, || {
-                    (0..count).try_for_each(|i| recursive.run(context, &rays.get(i), camera_tag(i), samples))
-                })
+                let Self { recursive, numbers, rays, samples, .. } = self;
+                let mut run = |(i, &number)| recursive.run(context, &rays.get(i), camera_tag(number), samples);
+                watched(probe, Phase::Trace, || numbers.iter().enumerate().try_for_each(&mut run))
             }
         }
     }
 }
 
 /// What the camera ray of a sample carries.
-pub(super) fn camera_tag(sample: usize) -> Tag {
-    Tag { sample: sample as u32, weight: Vec3f::ONE, media: Media::default(), budget: RAYS_PER_SAMPLE }
+pub(super) fn camera_tag(sample: u32) -> Tag {
+    Tag { sample, weight: Vec3f::ONE, media: Media::default(), budget: RAYS_PER_SAMPLE }
 }
 
 /// Workspaces that no thread is using at the moment: there are never more than threads.
