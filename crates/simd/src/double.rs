@@ -1,6 +1,6 @@
 //! Eight doubles: for results that are computed once in double precision.
 
-use crate::F32Lanes;
+use crate::{F32Lanes, MaskLanes};
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -26,6 +26,8 @@ pub trait F64Lanes:
     fn narrow(self) -> Self::Narrow;
     /// Write the lanes to `to`.
     fn store(self, to: &mut [f64; 8]);
+    /// `self < other`; false for NaN.
+    fn lt(self, other: Self) -> <Self::Narrow as F32Lanes>::Mask;
     /// `if self < other { self } else { other }` per lane: a NaN on either side gives `other`.
     fn min(self, other: Self) -> Self;
     /// `if self > other { self } else { other }` per lane: a NaN on either side gives `other`.
@@ -102,6 +104,14 @@ impl<N: F32Lanes<Array = [f32; 8]>> F64Lanes for ArrayF64<N> {
     #[inline(always)]
     fn store(self, to: &mut [f64; 8]) {
         *to = self.lanes;
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> N::Mask {
+        let mut bits = 0;
+        for i in 0..8 {
+            bits |= u32::from(self.lanes[i] < other.lanes[i]) << i;
+        }
+        N::Mask::from_bits(self.token, bits)
     }
     #[inline(always)]
     fn min(mut self, other: Self) -> Self {

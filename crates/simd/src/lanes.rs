@@ -31,6 +31,43 @@ pub trait Simd: Copy + Send + Sync + Debug + 'static {
         Self::F32x4::load(self, &[y, z, x, w])
     }
 
+    /// The columns of eight rows: element `j` of row `i` becomes element `i` of column `j`. Bits are kept.
+    #[inline(always)]
+    fn transpose(self, rows: [Self::F32x8; 8]) -> [Self::F32x8; 8] {
+        let (mut stored, mut columns) = ([[0.0; 8]; 8], [[0.0; 8]; 8]);
+        for i in 0..8 {
+            rows[i].store(&mut stored[i]);
+        }
+        for (i, row) in stored.iter().enumerate() {
+            for (column, &element) in columns.iter_mut().zip(row) {
+                column[i] = element;
+            }
+        }
+        let mut out = rows;
+        for i in 0..8 {
+            out[i] = Self::F32x8::load(self, &columns[i]);
+        }
+        out
+    }
+
+    /// The columns of eight rows of four: eight records become lanes. Bits are kept.
+    #[inline(always)]
+    fn columns(self, rows: [Self::F32x4; 8]) -> [Self::F32x8; 4] {
+        let mut columns = [[0.0; 8]; 4];
+        for i in 0..8 {
+            let mut row = [0.0; 4];
+            rows[i].store(&mut row);
+            for (column, element) in columns.iter_mut().zip(row) {
+                column[i] = element;
+            }
+        }
+        let mut out = [Self::F32x8::splat(self, 0.0); 4];
+        for i in 0..4 {
+            out[i] = Self::F32x8::load(self, &columns[i]);
+        }
+        out
+    }
+
     /// Append `ids[i]` to the front of `out` for every `i` with `masks[i] & bit != 0`, in order; return how many.
     ///
     /// The work of one child of a node in a stream walk. `masks` and `ids` have equal length.

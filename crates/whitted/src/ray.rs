@@ -2,9 +2,11 @@
 
 mod view;
 
+pub(crate) use view::lanes;
 pub use view::{Rays, Row};
 
 use crate::math::{Vec3, Vec3f};
+use std::ops::Range;
 
 /// No primitive, no instance.
 pub const NONE: u32 = u32::MAX;
@@ -184,17 +186,25 @@ impl HitBatch {
         self.t.is_empty()
     }
 
-    /// Make the batch `len` misses.
-    pub fn reset(&mut self, len: usize) {
-        fn fill<T: Copy>(row: &mut Vec<T>, len: usize, value: T) {
-            row.clear();
-            row.resize(len, value);
-        }
-        fill(&mut self.t, len, Hit::MISS.t);
-        fill(&mut self.u, len, Hit::MISS.u);
-        fill(&mut self.v, len, Hit::MISS.v);
-        fill(&mut self.primitive, len, Hit::MISS.primitive);
-        fill(&mut self.instance, len, Hit::MISS.instance);
+    /// Make every row `len` long; new hits are misses.
+    pub fn resize(&mut self, len: usize) {
+        self.t.resize(len, Hit::MISS.t);
+        self.u.resize(len, Hit::MISS.u);
+        self.v.resize(len, Hit::MISS.v);
+        self.primitive.resize(len, Hit::MISS.primitive);
+        self.instance.resize(len, Hit::MISS.instance);
+    }
+
+    /// Make the hits in a range misses.
+    ///
+    /// # Panics
+    /// If the range is not within the batch.
+    pub fn reset(&mut self, range: Range<usize>) {
+        self.t[range.clone()].fill(Hit::MISS.t);
+        self.u[range.clone()].fill(Hit::MISS.u);
+        self.v[range.clone()].fill(Hit::MISS.v);
+        self.primitive[range.clone()].fill(Hit::MISS.primitive);
+        self.instance[range].fill(Hit::MISS.instance);
     }
 
     /// Hit number `index`.

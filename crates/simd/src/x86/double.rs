@@ -38,6 +38,7 @@ impl F64Lanes for F64x8 {
     }
     methods! {
         narrow(a) -> avx512_x8::F32x8 = _mm512_cvtpd_ps(a);
+        lt(a, b) -> avx512_x8::Mask8 = _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b);
         min(a, b) -> Self = _mm512_min_pd(a, b);
         max(a, b) -> Self = _mm512_max_pd(a, b);
         sqrt(a) -> Self = _mm512_sqrt_pd(a);
@@ -84,8 +85,24 @@ impl F64Lanes for F64x4x2 {
     }
     methods! {
         narrow(a) -> avx2_x8::F32x8 = _mm256_set_m128(_mm256_cvtpd_ps(a.1), _mm256_cvtpd_ps(a.0));
+        lt(a, b) -> avx2_x8::Mask8 =
+            narrow_mask(_mm256_cmp_pd::<_CMP_LT_OQ>(a.0, b.0), _mm256_cmp_pd::<_CMP_LT_OQ>(a.1, b.1));
         min(a, b) -> Self = (_mm256_min_pd(a.0, b.0), _mm256_min_pd(a.1, b.1));
         max(a, b) -> Self = (_mm256_max_pd(a.0, b.0), _mm256_max_pd(a.1, b.1));
         sqrt(a) -> Self = (_mm256_sqrt_pd(a.0), _mm256_sqrt_pd(a.1));
+    }
+}
+
+/// Truth values of two times four doubles as those of eight floats.
+///
+/// # Safety
+/// The CPU must have AVX2.
+#[inline(always)]
+unsafe fn narrow_mask(low: __m256d, high: __m256d) -> __m256 {
+    // SAFETY: by this function's contract.
+    unsafe {
+        // Every half of a double's mask is its value: take the lower ones, then put the quarters in order.
+        let mixed = _mm256_shuffle_ps::<0b10_00_10_00>(_mm256_castpd_ps(low), _mm256_castpd_ps(high));
+        _mm256_castpd_ps(_mm256_permute4x64_pd::<0b11_01_10_00>(_mm256_castps_pd(mixed)))
     }
 }

@@ -15,6 +15,7 @@ mod avx512_x8;
 mod double;
 mod left_pack;
 mod sse42;
+mod transpose;
 mod x4;
 
 pub use avx2::Avx2;

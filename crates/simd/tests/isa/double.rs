@@ -1,9 +1,9 @@
 //! Doubles at every level against plain Rust.
 
 use crate::common::{SplitMix64, levels};
-use simd::{F32Lanes, F64Lanes, Kernel, Simd, dispatch};
+use simd::{F32Lanes, F64Lanes, Kernel, MaskLanes, Simd, dispatch, lanes_from_fn};
 
-const OPERATIONS: usize = 9;
+const OPERATIONS: usize = 10;
 
 struct All {
     a: [f32; 8],
@@ -19,7 +19,9 @@ impl Kernel for All {
         let b = S::F64x8::widen(S::F32x8::load(token, &self.b));
         let third = S::F64x8::splat(token, 1.0 / 3.0);
         let narrowed = S::F64x8::widen((a * third).narrow());
-        let results = [a + b, a - b, a * b * third, a / b, -a, a.min(b), a.max(b), a.sqrt(), narrowed];
+        let mask = a.lt(b).bits();
+        let less = S::F64x8::widen(S::F32x8::load(token, &lanes_from_fn(|i| (mask >> i & 1) as f32)));
+        let results = [a + b, a - b, a * b * third, a / b, -a, a.min(b), a.max(b), a.sqrt(), narrowed, less];
         let mut bits = [[0; 8]; OPERATIONS];
         for (bits, result) in bits.iter_mut().zip(results) {
             let mut lanes = [0.0; 8];
@@ -52,6 +54,7 @@ fn doubles_have_the_same_bits_at_every_level() {
             expected(|a, b| if a > b { a } else { b }),
             expected(|a, _| a.sqrt()),
             expected(|a, _| f64::from((a * (1.0 / 3.0)) as f32)),
+            expected(|a, b| f64::from(u8::from(a < b))),
         ];
 
         for level in levels() {

@@ -1,4 +1,4 @@
-//! The operations on lists that a token has: appending and compressing.
+//! The operations on lists and tables that a token has: appending, compressing, transposing.
 
 use crate::common::{SplitMix64, levels};
 use simd::{F32Lanes, Kernel, Level, Simd, dispatch};
@@ -80,6 +80,57 @@ fn compress_follows_the_order() {
     for level in levels() {
         for mask in 0..=u16::MAX {
             check_compress(level, mask, &mut random);
+        }
+    }
+}
+
+struct Transpose([[f32; 8]; 8]);
+
+impl Kernel for Transpose {
+    type Output = [[f32; 8]; 8];
+    #[inline(always)]
+    fn run<S: Simd>(self, token: S) -> Self::Output {
+        let columns = token.transpose(self.0.map(|row| S::F32x8::load(token, &row)));
+        columns.map(stored)
+    }
+}
+
+struct Columns([[f32; 4]; 8]);
+
+impl Kernel for Columns {
+    type Output = [[f32; 8]; 4];
+    #[inline(always)]
+    fn run<S: Simd>(self, token: S) -> Self::Output {
+        let columns = token.columns(self.0.map(|row| S::F32x4::load(token, &row)));
+        columns.map(stored)
+    }
+}
+
+fn stored<F: F32Lanes<Array = [f32; 8]>>(lanes: F) -> [f32; 8] {
+    let mut out = [0.0; 8];
+    lanes.store(&mut out);
+    out
+}
+
+#[test]
+fn rows_become_columns() {
+    let square: [[f32; 8]; 8] = std::array::from_fn(|i| std::array::from_fn(|j| (10 * i + j) as f32));
+    let tall: [[f32; 4]; 8] = std::array::from_fn(|i| std::array::from_fn(|j| (10 * i + j) as f32));
+    for level in levels() {
+        let columns = dispatch(level, Transpose(square));
+        assert!((0..8).all(|i| (0..8).all(|j| columns[j][i] == square[i][j])), "{level}: {columns:?}");
+        let columns = dispatch(level, Columns(tall));
+        assert!((0..8).all(|i| (0..4).all(|j| columns[j][i] == tall[i][j])), "{level}: {columns:?}");
+    }
+}
+
+#[test]
+fn transposing_keeps_bits() {
+    let signalling = f32::from_bits(0x7f80_0001);
+    for level in levels() {
+        for bits in [1, 2, signalling.to_bits(), u32::MAX] {
+            let columns = dispatch(level, Transpose([[f32::from_bits(bits); 8]; 8]));
+            assert!(columns.as_flattened().iter().all(|lane| lane.to_bits() == bits), "{level} {bits:#x}");
         }
     }
 }

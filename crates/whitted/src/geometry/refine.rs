@@ -1,29 +1,32 @@
 //! The final t and surface coordinates of hits, in double precision.
 //!
 //! The walks order hits by an `f32` t that is good to a few ulp of the distance in the *sheared* triangle; what is
-//! reported is the t of the triangle itself. Done once for each hit, eight at a time; [`Triangle::refine`] and
+//! reported is the t of the triangle itself. Done once for each hit, eight at a time, and
+//! hits that are neighbours in the batch together, so that rays need not be gathered; [`Triangle::refine`] and
 //! [`Sphere::refine`] are the scalar twins.
 
 use super::triangle::Refined;
-use super::{Kind, Primitives, Sphere, Triangle};
+use super::{Primitives, Sphere, Triangle};
 use crate::math::{Vec3, Vec3f};
-use crate::ray::{HitBatch, NONE, Ray, Rays};
-use simd::{F32Lanes, F64Lanes, Kernel, Level, Simd};
+use crate::ray::{HitBatch, NONE, Ray, Rays, lanes};
+use simd::{F32Lanes, F64Lanes, Kernel, Level, MaskLanes, Simd, U32Lanes};
+use std::ops::Range;
 
 /// Hits in a step.
 const STEP: usize = 8;
 
-/// Give every hit of a batch its t in double precision and its surface coordinates.
-pub(crate) fn refine(level: Level, primitives: &Primitives, rays: Rays<'_>, hits: &mut HitBatch) {
-    simd::dispatch(level, Refine { primitives, rays, hits });
+/// Give every hit in a range of a batch its t in double precision and its surface coordinates.
+pub(crate) fn refine(level: Level, primitives: &Primitives, rays: Rays<'_>, hits: &mut HitBatch, range: Range<usize>) {
+    simd::dispatch(level, Refine { primitives, rays, hits, range });
 }
 
 /// As [`refine`], one hit after the other in plain Rust.
-pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: Rays<'_>, hits: &mut HitBatch) {
-    for index in 0..hits.len() {
+pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: Rays<'_>, hits: &mut HitBatch, range: Range<usize>) {
+    for index in range {
         if hits.primitive[index] != NONE {
             let ray = rays.get(index);
-            set(hits, index, primitives.refine(&ray, hits.t[index], hits.primitive[index]));
+            let Refined { t, u, v } = primitives.refine(&ray, hits.t[index], hits.primitive[index]);
+            (hits.t[index], hits.u[index], hits.v[index]) = (t, u, v);
         }
     }
 }
@@ -32,6 +35,7 @@ struct Refine<'a> {
     primitives: &'a Primitives,
     rays: Rays<'a>,
     hits: &'a mut HitBatch,
+    range: Range<usize>,
 }
 
 impl Kernel for Refine<'_> {
@@ -39,147 +43,173 @@ impl Kernel for Refine<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, token: S) {
-        let Self { primitives, rays, hits } = self;
-        let mut triangles = Waiting::new();
-        let mut spheres = Waiting::new();
-        for index in 0..hits.len() {
-            let primitive = hits.primitive[index];
-            if primitive == NONE {
-                continue;
+        let Self { primitives, rays, hits, range } = self;
+        let triangles = ids::<S>(token, primitives.triangle_count());
+        let first_sphere = ids::<S>(token, primitives.first_sphere() as usize);
+        let spheres = ids::<S>(token, primitives.spheres().len());
+        for start in range.clone().step_by(STEP) {
+            let step = start..range.end.min(start + STEP);
+            let found = load_ids(token, &hits.primitive[step.clone()]);
+            let is_triangle = found.lt(triangles);
+            if is_triangle.any() {
+                refine_triangles(token, primitives, rays, hits, step.clone(), is_triangle);
             }
-            match primitives.kind(primitive) {
-                Kind::Triangle(i) => {
-                    let [a, b, c] = primitives.triangle(i).vertices;
-                    triangles.push(index, rays, [a, b, c]);
-                    if triangles.len == STEP {
-                        triangles.refine_triangles(token, rays, hits);
-                    }
-                }
-                Kind::Sphere(i) => {
-                    let sphere = &primitives.spheres()[i];
-                    spheres.push(index, rays, [sphere.center, Vec3f::splat(sphere.radius), Vec3f::ZERO]);
-                    if spheres.len == STEP {
-                        spheres.refine_spheres(token, rays, hits);
-                    }
-                }
-                Kind::Shape(_) | Kind::Plane(_) => {}
+            // Wraps round for triangles, so that no other kind looks like a sphere.
+            let sphere = found - first_sphere;
+            let is_sphere = sphere.lt(spheres);
+            if is_sphere.any() {
+                refine_spheres(token, primitives.spheres(), rays, hits, step, is_sphere, sphere);
             }
         }
-        triangles.refine_triangles(token, rays, hits);
-        spheres.refine_spheres(token, rays, hits);
     }
 }
 
-/// Hits on their way into lanes: origin, direction and three points of each.
-struct Waiting {
-    index: [usize; STEP],
-    rows: [[f32; STEP]; 15],
-    len: usize,
-}
+type Ids<S> = <<S as Simd>::F32x8 as F32Lanes>::U32;
+type Mask<S> = <<S as Simd>::F32x8 as F32Lanes>::Mask;
 
-impl Waiting {
-    fn new() -> Self {
-        Self { index: [0; STEP], rows: [[0.0; STEP]; 15], len: 0 }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, index: usize, rays: Rays<'_>, points: [Vec3f; 3]) {
-        let lane = self.len % STEP;
-        self.index[lane] = index;
-        let (o, d) = (rays.origin, rays.direction);
-        let ray = [o.x[index], o.y[index], o.z[index], d.x[index], d.y[index], d.z[index]];
-        for row in 0..6 {
-            self.rows[row][lane] = ray[row];
-        }
-        for (point, rows) in points.into_iter().zip(self.rows[6..].chunks_exact_mut(3)) {
-            (rows[0][lane], rows[1][lane], rows[2][lane]) = (point.x, point.y, point.z);
-        }
-        self.len += 1;
-    }
-
-    #[inline(always)]
-    fn vector<S: Simd>(&self, token: S, first: usize) -> Vec3<S::F64x8> {
-        Vec3::new(self.row(token, first), self.row(token, first + 1), self.row(token, first + 2))
-    }
-
-    #[inline(always)]
-    fn row<S: Simd>(&self, token: S, row: usize) -> S::F64x8 {
-        S::F64x8::widen(S::F32x8::load(token, &self.rows[row]))
-    }
-
-    /// The vector twin of [`Triangle::refine`].
-    #[inline(always)]
-    fn refine_triangles<S: Simd>(&mut self, token: S, rays: Rays<'_>, hits: &mut HitBatch) {
-        let (o, d) = (self.vector(token, 0), self.vector(token, 3));
-        let (a, b, c) = (self.vector(token, 6), self.vector(token, 9), self.vector(token, 12));
-        let (zero, one) = (S::F64x8::splat(token, 0.0), S::F64x8::splat(token, 1.0));
-        let (ab, ac, from_a) = (b - a, c - a, o - a);
-        let p = d.cross(ac);
-        let area = ab.dot(p);
-        let per_area = one / area;
-        let u = (from_a.dot(p) * per_area).max(zero).min(one);
-        let v = (d.dot(from_a.cross(ab)) * per_area).max(zero).min(one - u);
-        let along = (ab * u + ac * v - from_a).dot(d) / d.length_squared();
-        let mut areas = [0.0; STEP];
-        area.store(&mut areas);
-        let (t, u, v) = (stored::<S>(along), stored::<S>(u), stored::<S>(v));
-        for lane in 0..self.len {
-            let index = self.index[lane];
-            let refined = if is_flat(areas[lane]) {
-                Refined { t: hits.t[index], u: 0.0, v: 0.0 }
-            } else {
-                Refined { t: t[lane].max(rays.t_min[index]).min(rays.t_max[index]), u: u[lane], v: v[lane] }
-            };
-            set(hits, index, refined);
-        }
-        self.len = 0;
-    }
-
-    /// The vector twin of [`Sphere::refine`].
-    #[inline(always)]
-    fn refine_spheres<S: Simd>(&mut self, token: S, rays: Rays<'_>, hits: &mut HitBatch) {
-        let (d, center, radius) = (self.vector(token, 3), self.vector(token, 6), self.row(token, 9));
-        let o = self.vector(token, 0) - center;
-        let zero = S::F64x8::splat(token, 0.0);
-        let inverse = S::F64x8::splat(token, 1.0) / d.length_squared();
-        let middle = -(o.dot(d)) * inverse;
-        let nearest = o + d * middle;
-        let half_chord = ((radius * radius - nearest.length_squared()) * inverse).max(zero).sqrt();
-        let mut middles = [0.0; STEP];
-        middle.store(&mut middles);
-        let (near, far) = (stored::<S>(middle - half_chord), stored::<S>(middle + half_chord));
-        for lane in 0..self.len {
-            let index = self.index[lane];
-            let root = if f64::from(hits.t[index]) < middles[lane] { near[lane] } else { far[lane] };
-            hits.t[index] = root.max(rays.t_min[index]).min(rays.t_max[index]);
-        }
-        self.len = 0;
-    }
-}
-
-/// Lanes rounded to `f32`.
 #[inline(always)]
-fn stored<S: Simd>(lanes: S::F64x8) -> [f32; STEP] {
-    let mut out = [0.0; STEP];
-    lanes.narrow().store(&mut out);
-    out
+fn ids<S: Simd>(token: S, value: usize) -> Ids<S> {
+    Ids::<S>::splat(token, value as u32)
+}
+
+/// The primitives of a step; [`NONE`] beyond its end.
+#[inline(always)]
+fn load_ids<S: Simd>(token: S, row: &[u32]) -> Ids<S> {
+    let mut padded = [NONE; STEP];
+    if row.len() == STEP {
+        return Ids::<S>::load_slice(token, row);
+    }
+    padded[..row.len()].copy_from_slice(row);
+    Ids::<S>::load(token, &padded)
+}
+
+/// The vector twin of [`Triangle::refine`], for the lanes of `mask`.
+#[inline(always)]
+fn refine_triangles<S: Simd>(
+    token: S,
+    primitives: &Primitives,
+    rays: Rays<'_>,
+    hits: &mut HitBatch,
+    step: Range<usize>,
+    mask: Mask<S>,
+) {
+    let (o, d) = (vector(token, rays.origin, &step), vector(token, rays.direction, &step));
+    let [a, b, c] = corners(token, primitives, load_ids(token, &hits.primitive[step.clone()]), mask);
+    let (zero, one) = (S::F64x8::splat(token, 0.0), S::F64x8::splat(token, 1.0));
+    let (ab, ac, from_a) = (b - a, c - a, o - a);
+    let p = d.cross(ac);
+    let area = ab.dot(p);
+    let per_area = one / area;
+    let u = (from_a.dot(p) * per_area).max(zero).min(one);
+    let v = (d.dot(from_a.cross(ab)) * per_area).max(zero).min(one - u);
+    let along = (ab * u + ac * v - from_a).dot(d) / d.length_squared();
+    let t = in_range(token, along.narrow(), rays, &step);
+    let sound = mask & (area.lt(zero) | zero.lt(area));
+    blend(token, &mut hits.t[step.clone()], sound, t);
+    blend(token, &mut hits.u[step.clone()], sound, u.narrow());
+    blend(token, &mut hits.v[step], sound, v.narrow());
+}
+
+/// The three corners of the triangle in each lane of `mask`; of triangle 0 in others.
+#[inline(always)]
+fn corners<S: Simd>(token: S, primitives: &Primitives, found: Ids<S>, mask: Mask<S>) -> [Vec3<S::F64x8>; 3] {
+    let mut found_stored = [0; STEP];
+    Ids::<S>::select(mask, found, ids::<S>(token, 0)).store(&mut found_stored);
+    let point = S::F32x4::splat(token, 0.0);
+    let (mut a, mut b, mut c) = ([point; STEP], [point; STEP], [point; STEP]);
+    for lane in 0..STEP {
+        let vertices = primitives.triangle(found_stored[lane] as usize).vertices;
+        a[lane] = padded(token, vertices[0], 0.0);
+        b[lane] = padded(token, vertices[1], 0.0);
+        c[lane] = padded(token, vertices[2], 0.0);
+    }
+    [widened(token, a).0, widened(token, b).0, widened(token, c).0]
+}
+
+/// The vector twin of [`Sphere::refine`], for the lanes of `mask`.
+#[inline(always)]
+fn refine_spheres<S: Simd>(
+    token: S,
+    spheres: &[Sphere],
+    rays: Rays<'_>,
+    hits: &mut HitBatch,
+    step: Range<usize>,
+    mask: Mask<S>,
+    sphere: Ids<S>,
+) {
+    let mut index = [0; STEP];
+    Ids::<S>::select(mask, sphere, ids::<S>(token, 0)).store(&mut index);
+    let mut records = [S::F32x4::splat(token, 0.0); STEP];
+    for lane in 0..STEP {
+        let sphere = &spheres[index[lane] as usize];
+        records[lane] = padded(token, sphere.center, sphere.radius);
+    }
+    let (center, radius) = widened(token, records);
+    let (origin, d) = (vector(token, rays.origin, &step), vector(token, rays.direction, &step));
+    let o = origin - center;
+    let zero = S::F64x8::splat(token, 0.0);
+    let inverse = S::F64x8::splat(token, 1.0) / d.length_squared();
+    let middle = -(o.dot(d)) * inverse;
+    let nearest = o + d * middle;
+    let half_chord = ((radius * radius - nearest.length_squared()) * inverse).max(zero).sqrt();
+    let (near, far) = ((middle - half_chord).narrow(), (middle + half_chord).narrow());
+    let before = S::F64x8::widen(lanes(token, &hits.t, step.clone())).lt(middle);
+    let t = in_range(token, S::F32x8::select(before, near, far), rays, &step);
+    blend(token, &mut hits.t[step], mask, t);
+}
+
+#[inline(always)]
+fn padded<S: Simd>(token: S, point: Vec3f, last: f32) -> S::F32x4 {
+    S::F32x4::load(token, &[point.x, point.y, point.z, last])
+}
+
+/// Eight records of four as a vector and the rest.
+#[inline(always)]
+fn widened<S: Simd>(token: S, records: [S::F32x4; STEP]) -> (Vec3<S::F64x8>, S::F64x8) {
+    let [x, y, z, last] = token.columns(records);
+    (Vec3::new(S::F64x8::widen(x), S::F64x8::widen(y), S::F64x8::widen(z)), S::F64x8::widen(last))
+}
+
+/// A step of three rows, in double precision.
+#[inline(always)]
+fn vector<S: Simd>(token: S, rows: Vec3<&[f32]>, step: &Range<usize>) -> Vec3<S::F64x8> {
+    Vec3::new(
+        S::F64x8::widen(lanes(token, rows.x, step.clone())),
+        S::F64x8::widen(lanes(token, rows.y, step.clone())),
+        S::F64x8::widen(lanes(token, rows.z, step.clone())),
+    )
+}
+
+/// Replace the lanes of `mask` in a step of a row.
+#[inline(always)]
+fn blend<S: Simd>(token: S, row: &mut [f32], mask: Mask<S>, new: S::F32x8) {
+    let blended = S::F32x8::select(mask, new, lanes(token, row, 0..row.len()));
+    if row.len() == STEP {
+        return blended.store_slice(row);
+    }
+    let mut padded = [0.0; STEP];
+    blended.store(&mut padded);
+    let len = row.len();
+    row.copy_from_slice(&padded[..len]);
+}
+
+/// Parameters kept within their rays' ranges.
+#[inline(always)]
+fn in_range<S: Simd>(token: S, t: S::F32x8, rays: Rays<'_>, step: &Range<usize>) -> S::F32x8 {
+    t.max(rays.t_min.lanes(token, step.clone())).min(rays.t_max.lanes(token, step.clone()))
 }
 
 fn is_flat(area: f64) -> bool {
     area == 0.0 || area.is_nan()
 }
 
-fn set(hits: &mut HitBatch, index: usize, refined: Refined) {
-    (hits.t[index], hits.u[index], hits.v[index]) = (refined.t, refined.u, refined.v);
-}
-
 /// `if a > b { a } else { b }`, as lanes do it.
-fn max(a: f64, b: f64) -> f64 {
+fn max<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
 /// `if a < b { a } else { b }`, as lanes do it.
-fn min(a: f64, b: f64) -> f64 {
+fn min<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 
@@ -203,7 +233,7 @@ impl Triangle {
         let u = min(max(from_a.dot(p) * per_area, 0.0), 1.0);
         let v = min(max(d.dot(from_a.cross(ab)) * per_area, 0.0), 1.0 - u);
         let along = (ab * u + ac * v - from_a).dot(d) / d.length_squared();
-        Refined { t: (along as f32).max(ray.t_min).min(ray.t_max), u: u as f32, v: v as f32 }
+        Refined { t: min(max(along as f32, ray.t_min), ray.t_max), u: u as f32, v: v as f32 }
     }
 }
 
@@ -217,6 +247,6 @@ impl Sphere {
         let radius = f64::from(self.radius);
         let half_chord = max((radius * radius - nearest.length_squared()) * inverse, 0.0).sqrt();
         let root = if f64::from(t) < middle { middle - half_chord } else { middle + half_chord };
-        (root as f32).max(ray.t_min).min(ray.t_max)
+        min(max(root as f32, ray.t_min), ray.t_max)
     }
 }

@@ -73,7 +73,7 @@ impl ShearedRay {
 
 /// The axis of the largest absolute component; ties go to x, then y.
 #[inline(always)]
-fn dominant_axis(direction: Vec3f) -> usize {
+pub(crate) fn dominant_axis(direction: Vec3f) -> usize {
     let a = direction.abs();
     let y_over_x = usize::from(a.y > a.x);
     if a.z > a.x.max(a.y) { 2 } else { y_over_x }

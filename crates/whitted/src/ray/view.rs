@@ -2,6 +2,7 @@
 
 use super::{Ray, RayBatch};
 use crate::math::Vec3;
+use simd::F32Lanes;
 use std::ops::{Index, Range};
 
 /// One value for each ray, or the same for all.
@@ -20,6 +21,29 @@ impl<'a, T> Row<'a, T> {
             all => all,
         }
     }
+}
+
+impl Row<'_, f32> {
+    /// The values of a range that is no longer than the lanes.
+    #[inline(always)]
+    pub(crate) fn lanes<F: F32Lanes>(self, token: F::Token, range: Range<usize>) -> F {
+        match self {
+            Self::Each(values) => lanes(token, values, range),
+            Self::All(value) => F::splat(token, value),
+        }
+    }
+}
+
+/// The values of a range of a row that is no longer than the lanes; 0 beyond it.
+#[inline(always)]
+pub(crate) fn lanes<F: F32Lanes>(token: F::Token, row: &[f32], range: Range<usize>) -> F {
+    let row = &row[range];
+    if row.len() == F::WIDTH {
+        return F::load_slice(token, row);
+    }
+    let mut padded = F::Array::default();
+    padded.as_mut()[..row.len()].copy_from_slice(row);
+    F::load(token, &padded)
 }
 
 impl<T> Index<usize> for Row<'_, T> {

@@ -53,14 +53,15 @@ impl Query<'_> {
     /// Of several primitives at the same t the one with the lowest number is reported.
     pub fn closest_hit<'r>(&self, rays: impl Into<Rays<'r>>, hits: &mut HitBatch, scratch: &mut Scratch) -> Counts {
         let rays = rays.into();
-        hits.reset(rays.len());
+        hits.resize(rays.len());
         let mut counts = Counts::default();
         for chunk in chunks(rays.len()) {
+            hits.reset(chunk.clone());
             let primitive = &mut hits.primitive[chunk.clone()];
             counts += self.walk(rays, chunk.clone(), &mut Closest { primitive }, scratch);
-            scratch.rays.found(&hits.primitive[chunk.clone()], &mut hits.t[chunk]);
+            scratch.rays.found(&hits.primitive[chunk.clone()], &mut hits.t[chunk.clone()]);
+            self.refine(rays, hits, chunk);
         }
-        self.refine(rays, hits);
         counts
     }
 
@@ -80,18 +81,19 @@ impl Query<'_> {
     ) -> Counts {
         let rays = rays.into();
         assert_eq!(after.len(), rays.len(), "one starting point for each ray");
-        hits.reset(rays.len());
+        hits.resize(rays.len());
         let mut counts = Counts::default();
         for chunk in chunks(rays.len()) {
+            hits.reset(chunk.clone());
             let primitive = &mut hits.primitive[chunk.clone()];
             let mut goal = Next { primitive, after: &after[chunk.clone()] };
             counts += self.walk(rays, chunk.clone(), &mut goal, scratch);
-            scratch.rays.found(&hits.primitive[chunk.clone()], &mut hits.t[chunk]);
+            scratch.rays.found(&hits.primitive[chunk.clone()], &mut hits.t[chunk.clone()]);
+            for index in chunk.clone() {
+                after[index] = (hits.t[index], hits.primitive[index]);
+            }
+            self.refine(rays, hits, chunk);
         }
-        for (after, found) in after.iter_mut().zip(hits.t.iter().zip(&hits.primitive)) {
-            *after = (*found.0, *found.1);
-        }
-        self.refine(rays, hits);
         counts
     }
 
@@ -121,7 +123,7 @@ impl Query<'_> {
     fn walk<G: Goal>(&self, rays: Rays<'_>, chunk: Range<usize>, goal: &mut G, scratch: &mut Scratch) -> Counts {
         let Scratch { rays: prepared, lists } = scratch;
         let first = chunk.start;
-        prepared.fill(self.level, self.tree, self.primitives, rays, chunk);
+        prepared.begin(self.level, self.tree, self.primitives, rays, chunk);
         let mut counts = walk::planes(self.primitives, prepared, goal);
         counts += match self.tree.kind() {
             TreeKind::None => brute_force::walk(self.tree, self.primitives, rays, first, prepared, goal),
@@ -143,11 +145,11 @@ impl Query<'_> {
         counts
     }
 
-    /// Give every hit its t in double precision and its surface coordinates.
-    fn refine(&self, rays: Rays<'_>, hits: &mut HitBatch) {
+    /// Give every hit of a chunk its t in double precision and its surface coordinates.
+    fn refine(&self, rays: Rays<'_>, hits: &mut HitBatch, chunk: Range<usize>) {
         match self.tree.kind() {
-            TreeKind::None => geometry::refine_one_by_one(self.primitives, rays, hits),
-            _ => geometry::refine(self.level, self.primitives, rays, hits),
+            TreeKind::None => geometry::refine_one_by_one(self.primitives, rays, hits, chunk),
+            _ => geometry::refine(self.level, self.primitives, rays, hits, chunk),
         }
     }
 }

@@ -115,7 +115,7 @@ pub(crate) fn ray(rng: &mut SplitMix64, primitives: &Primitives) -> Ray {
 }
 
 /// Sixty-four rays from one origin towards neighbouring points, as from a camera or a light; some packets are wide,
-/// some have odd rays among them.
+/// some have odd rays among them, or rays between two dominant axes.
 pub(crate) fn packet(rng: &mut SplitMix64, primitives: &Primitives) -> Vec<Ray> {
     let lead = ray(rng, primitives);
     let width = [0.001, 0.05, 1.0][rng.below(3) as usize] * f64::from(lead.direction.abs().max_component());
@@ -127,6 +127,8 @@ pub(crate) fn packet(rng: &mut SplitMix64, primitives: &Primitives) -> Vec<Ray> 
         .collect();
     match rng.below(6) {
         0 => rays[rng.below(64) as usize] = ray(rng, primitives),
+        2 => rays.iter_mut().for_each(|ray| ray.direction.y = ray.direction.x),
+        3 => rays.iter_mut().step_by(3).for_each(|ray| ray.direction.z = -ray.direction.x),
         1 => rays.iter_mut().for_each(|ray| ray.t_max = rng.uniform(0.0, 2.0) as f32),
         _ => {}
     }

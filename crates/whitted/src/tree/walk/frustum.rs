@@ -13,7 +13,7 @@
 use super::Walk;
 use super::single::Stack;
 use crate::geometry::sphere::{self, SphereRays};
-use crate::geometry::triangle::{self, ShearedRays, renamed};
+use crate::geometry::triangle::{self, ShearedRays, dominant_axis, renamed};
 use crate::math::Vec3;
 use crate::ray;
 use crate::tree::goal::Goal;
@@ -59,6 +59,8 @@ struct Packet {
     axis: usize,
     /// True if the rays run towards smaller coordinates of the dominant axis.
     backward: bool,
+    /// Signs of the first direction, by which children are ordered.
+    octant: usize,
 }
 
 /// The pyramid around a packet, in renamed axes: planes `x − slope·z = offset`, the apex being the origin.
@@ -87,7 +89,7 @@ pub(super) fn walk<S: Simd, G: Goal>(
 ) -> bool {
     let Some(mut packet) = Packet::new(token, walk, first) else { return false };
     let mut pyramid = Pyramid::around(token, walk, &packet);
-    let octant = walk.rays.octant[first] as usize & 7;
+    let octant = packet.octant;
     let mut budget = BUDGET;
     stack.reserve(walk.tree.depth(), 1);
     (stack.entry[0], stack.child[0]) = (f32::NEG_INFINITY, Child::interior(0).0);
@@ -148,8 +150,9 @@ impl Packet {
         {
             return None;
         }
-        let octant = walk.rays.octant[first];
-        let axis = walk.axis(first);
+        let along = Vec3::new(d.x[start], d.y[start], d.z[start]);
+        let axis = dominant_axis(along);
+        let octant = [along.x, along.y, along.z].map(|component| usize::from(component.is_sign_negative()));
         let mut packet = Self {
             origin: apex * walk.tree.scale(),
             direction: [rows(d.x), rows(d.y), rows(d.z)],
@@ -158,13 +161,11 @@ impl Packet {
                 ray::Row::Each(t_min) => rows(t_min),
                 ray::Row::All(t_min) => Row([t_min; PACKET]),
             },
-            limit: Row([0.0; PACKET]),
+            limit: Row(*walk.rays.limits(first)),
             axis,
-            backward: octant >> axis & 1 != 0,
+            backward: octant[axis] != 0,
+            octant: octant[0] | octant[1] << 1 | octant[2] << 2,
         };
-        for (limit, ray) in packet.limit.0.iter_mut().zip(&walk.rays.nodes[first..first + PACKET]) {
-            *limit = ray.limit;
-        }
         packet.prepare(token, walk.tree.scale()).then_some(packet)
     }
 
@@ -184,7 +185,7 @@ impl Packet {
             ];
             let (dx, dy, dz) = (d[x], d[y], d[z]);
             let ahead = if self.backward { dz.lt(zero) } else { zero.lt(dz) };
-            sound = sound & ahead & dx.abs().le(dz.abs()) & dy.abs().le(dz.abs());
+            sound = sound & ahead & dominated(dx, dz, x < z) & dominated(dy, dz, y < z);
             sound = sound & zero.le(self.t_min.load(token, row));
             self.shear[0].store::<S>(row, dx / dz);
             self.shear[1].store::<S>(row, dy / dz);
@@ -212,9 +213,7 @@ impl Packet {
     /// Write the rays' limits back.
     #[inline(always)]
     fn finish<G: Goal>(&self, walk: &mut Walk<'_, G>, first: usize) {
-        for (ray, &limit) in walk.rays.nodes[first..first + PACKET].iter_mut().zip(&self.limit.0) {
-            ray.limit = limit;
-        }
+        *walk.rays.limits_mut(first) = self.limit.0;
     }
 
     /// Test the triangles of a block that the pyramid touches; returns how many.
@@ -296,6 +295,12 @@ impl Packet {
         }
         count
     }
+}
+
+/// True where `component` does not take the place of `dominant` as the dominant one; of two equals the first does.
+#[inline(always)]
+fn dominated<F: F32Lanes>(component: F, dominant: F, is_first: bool) -> F::Mask {
+    if is_first { component.abs().lt(dominant.abs()) } else { component.abs().le(dominant.abs()) }
 }
 
 /// True if the first [`PACKET`] values of a row equal `value`.

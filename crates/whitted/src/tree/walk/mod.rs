@@ -9,6 +9,7 @@ mod slabs;
 mod stream;
 
 pub(super) use prepared::PreparedRays;
+use prepared::Records;
 pub(super) use stream::Lists;
 
 use super::goal::Goal;
@@ -38,9 +39,8 @@ impl<G: Goal> Kernel for Walk<'_, G> {
     #[inline(always)]
     fn run<S: Simd>(mut self, token: S) -> Counts {
         let mut counts = Counts::default();
-        if self.kind == WalkKind::Auto {
-            self.packets(token, &mut counts);
-        }
+        let walked = self.packets(token, &mut counts);
+        self.record(token, walked);
         match self.kind {
             WalkKind::Auto | WalkKind::Stream if self.rays.any_slack() => {
                 stream::walk::<S, G, true>(token, &mut self, &mut counts);
@@ -59,29 +59,33 @@ impl<G: Goal> Kernel for Walk<'_, G> {
 }
 
 impl<G: Goal> Walk<'_, G> {
-    /// Walk what makes packets; the rest stays for the stream.
+    /// Walk what makes packets; returns them as bits. The rest needs records.
     #[inline(always)]
-    fn packets<S: Simd>(&mut self, token: S, counts: &mut Counts) {
+    fn packets<S: Simd>(&mut self, token: S, counts: &mut Counts) -> u64 {
         // A packet offers each primitive once, and shapes are not its business.
-        if G::EVERY_CROSSING || !self.primitives.shapes().is_empty() {
-            return;
+        if self.kind != WalkKind::Auto || G::EVERY_CROSSING || !self.primitives.shapes().is_empty() {
+            return 0;
         }
+        let mut walked = 0;
         let mut stack = std::mem::take(&mut self.lists.stack);
-        for first in (0..self.rays.len()).step_by(frustum::PACKET) {
-            let full = first + frustum::PACKET <= self.rays.len();
-            if full && frustum::walk(token, self, &mut stack, first, counts) {
-                self.rays.octant[first..first + frustum::PACKET].fill(stream::DONE);
-            }
+        for packet in 0..self.rays.len() / frustum::PACKET {
+            let done = frustum::walk(token, self, &mut stack, packet * frustum::PACKET, counts);
+            walked |= u64::from(done) << packet;
         }
         self.lists.stack = stack;
+        walked
     }
 
-    /// The axis along which a ray runs mostly.
-    fn axis(&self, index: usize) -> usize {
-        let inverse = crate::math::Vec3::from(self.rays.nodes[index].inverse).abs();
-        // The largest component has the smallest reciprocal.
-        let y_below_x = usize::from(inverse.y < inverse.x);
-        if inverse.z < inverse.x.min(inverse.y) { 2 } else { y_below_x }
+    /// Make the records of all rays but those in the packets `walked`.
+    #[inline(always)]
+    fn record<S: Simd>(&mut self, token: S, walked: u64) {
+        self.rays.reserve_records(self.primitives);
+        let from = Records { tree: self.tree, primitives: self.primitives, rays: self.batch, start: self.start };
+        for packet in 0..self.rays.packets() {
+            if walked >> packet & 1 == 0 {
+                self.rays.record(token, &from, packet);
+            }
+        }
     }
 
     /// Test one ray against the blocks of a leaf.
@@ -96,7 +100,7 @@ impl<G: Goal> Walk<'_, G> {
         counts: &mut Counts,
     ) {
         counts.primitive_tests += (count * super::leaf::BLOCK) as u64;
-        let (t_min, mut limit) = (self.rays.t_min(index), self.rays.limit(index));
+        let (t_min, mut limit) = (self.rays.nodes[index].t_min(), self.rays.nodes[index].limit());
         let blocks = first..first + count;
         match kind {
             LeafKind::Triangles => {
@@ -113,7 +117,7 @@ impl<G: Goal> Walk<'_, G> {
             }
             LeafKind::Shapes => shapes(self, index, blocks, &mut limit),
         }
-        self.rays.set_limit(index, limit);
+        self.rays.shorten(index, limit);
     }
 }
 

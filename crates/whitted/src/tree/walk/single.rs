@@ -87,7 +87,7 @@ pub(super) fn interleaved<S: Simd, G: Goal>(
 impl Path {
     #[inline(always)]
     fn new<G: Goal>(walk: &Walk<'_, G>, stack: &mut Stack, index: usize, start: Child, base: usize) -> Self {
-        (stack.entry[base], stack.child[base]) = (walk.rays.t_min(index), start.0);
+        (stack.entry[base], stack.child[base]) = (walk.rays.nodes[index].t_min(), start.0);
         Self { index, base, top: base + 1 }
     }
 
@@ -106,7 +106,7 @@ impl Path {
                 return false;
             }
             self.top -= 1;
-            if stack.entry[self.top] <= ray.limit {
+            if stack.entry[self.top] <= ray.limit() {
                 break;
             }
         }
@@ -116,7 +116,7 @@ impl Path {
                 counts.node_steps += 1;
                 let node = &walk.tree.nodes[node];
                 let octant = walk.rays.octant[self.index] as usize & 7;
-                let (mask, entry) = Slabs::load(token, node, octant).enter(token, ray, &walk.rays.far[self.index]);
+                let (mask, entry) = Slabs::load(token, node, octant).enter(token, ray, walk.rays.far(self.index));
                 let keys = (&mut stack.entry[top..top + WIDTH]).try_into().expect("WIDTH entries");
                 let values = (&mut stack.child[top..top + WIDTH]).try_into().expect("WIDTH children");
                 self.top += token.compress_in_order(mask, &node.order[octant], entry, node.children(), keys, values);

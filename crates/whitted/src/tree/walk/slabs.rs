@@ -24,11 +24,11 @@ impl<S: Simd> Slabs<S> {
     ///
     /// `far_offset` is the ray's offset for the planes where it leaves. A NaN from a plane is passed over.
     #[inline(always)]
-    pub(super) fn enter(&self, token: S, ray: &NodeRay, far_offset: &[f32; 3]) -> (u16, S::F32x16) {
-        let inverse = crate::geometry::splat(token, ray.inverse);
-        let near = crate::geometry::splat(token, ray.near);
-        let far = crate::geometry::splat(token, *far_offset);
-        let (t_min, limit) = (S::F32x16::splat(token, ray.t_min), S::F32x16::splat(token, ray.limit));
+    pub(super) fn enter(&self, token: S, ray: &NodeRay, far_offset: [f32; 3]) -> (u16, S::F32x16) {
+        let inverse = crate::geometry::splat(token, ray.inverse());
+        let near = crate::geometry::splat(token, ray.near());
+        let far = crate::geometry::splat(token, far_offset);
+        let (t_min, limit) = (S::F32x16::splat(token, ray.t_min()), S::F32x16::splat(token, ray.limit()));
         let [x, y, z] = met(self.near, inverse, near);
         let entry = x.max(y).max(z.max(t_min));
         let [x, y, z] = met(self.far, inverse, far);

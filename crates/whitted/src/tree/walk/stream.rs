@@ -24,9 +24,6 @@ const _: () = assert!(MIN_LIST <= single::WAYS + 1, "a short list is walked at o
 /// What `append_matching` may overwrite beyond a list.
 const SPARE: usize = 32;
 
-/// Stands for the octant of a ray that needs no walk any more.
-pub(super) const DONE: u8 = u8::MAX;
-
 /// Memory of the walk.
 #[derive(Debug, Default)]
 pub(in crate::tree) struct Lists {
@@ -53,9 +50,15 @@ pub(super) fn walk<S: Simd, G: Goal, const SLACK: bool>(token: S, walk: &mut Wal
     for bucket in &mut lists.octants {
         bucket.clear();
     }
-    for (index, (ray, &octant)) in walk.rays.nodes.iter().zip(&walk.rays.octant).enumerate() {
-        if octant != DONE && ray.limit >= ray.t_min {
-            lists.octants[octant as usize & 7].push(index as u16);
+    for packet in 0..walk.rays.packets() {
+        if !walk.rays.is_recorded(packet) {
+            continue;
+        }
+        for index in walk.rays.packet(packet) {
+            let ray = &walk.rays.nodes[index];
+            if ray.limit() >= ray.t_min() {
+                lists.octants[walk.rays.octant[index] as usize & 7].push(index as u16);
+            }
         }
     }
     for octant in 0..8 {
@@ -117,7 +120,7 @@ fn enter<S: Simd, const SLACK: bool>(
     let mut any = 0;
     for (mask, &id) in masks.iter_mut().zip(ids) {
         let ray = &rays.nodes[id as usize];
-        let far = if SLACK { &rays.far[id as usize] } else { &ray.near };
+        let far = if SLACK { rays.far(id as usize) } else { ray.near() };
         *mask = slabs.enter(token, ray, far).0;
         any |= *mask;
     }

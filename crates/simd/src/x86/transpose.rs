@@ -1,0 +1,66 @@
+//! Rows to columns and back, in registers: what the other way, through memory, would lose is time: a wide load of what
+//! narrow stores have just written has to wait for all of them.
+
+use std::arch::x86_64::*;
+
+/// The columns of eight rows of eight.
+///
+/// # Safety
+/// The CPU must have AVX.
+#[inline(always)]
+pub(super) unsafe fn transpose_8x8(rows: [__m256; 8]) -> [__m256; 8] {
+    let [a, b, c, d, e, f, g, h] = rows;
+    // SAFETY: by this function's contract.
+    unsafe {
+        // Upper and lower halves of four columns at once.
+        let low = transpose_4x4_halves([a, b, c, d]);
+        let high = transpose_4x4_halves([e, f, g, h]);
+        [
+            _mm256_permute2f128_ps::<0x20>(low[0], high[0]),
+            _mm256_permute2f128_ps::<0x20>(low[1], high[1]),
+            _mm256_permute2f128_ps::<0x20>(low[2], high[2]),
+            _mm256_permute2f128_ps::<0x20>(low[3], high[3]),
+            _mm256_permute2f128_ps::<0x31>(low[0], high[0]),
+            _mm256_permute2f128_ps::<0x31>(low[1], high[1]),
+            _mm256_permute2f128_ps::<0x31>(low[2], high[2]),
+            _mm256_permute2f128_ps::<0x31>(low[3], high[3]),
+        ]
+    }
+}
+
+/// The columns of eight rows of four.
+///
+/// # Safety
+/// The CPU must have AVX.
+#[inline(always)]
+pub(super) unsafe fn transpose_8x4(rows: [__m128; 8]) -> [__m256; 4] {
+    let [a, b, c, d, e, f, g, h] = rows;
+    // SAFETY: by this function's contract.
+    unsafe {
+        transpose_4x4_halves([
+            _mm256_set_m128(e, a),
+            _mm256_set_m128(f, b),
+            _mm256_set_m128(g, c),
+            _mm256_set_m128(h, d),
+        ])
+    }
+}
+
+/// The columns of four rows of four, in each half of the registers for itself.
+///
+/// # Safety
+/// The CPU must have AVX.
+#[inline(always)]
+unsafe fn transpose_4x4_halves([a, b, c, d]: [__m256; 4]) -> [__m256; 4] {
+    // SAFETY: by this function's contract.
+    unsafe {
+        let (ab_low, ab_high) = (_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
+        let (cd_low, cd_high) = (_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d));
+        [
+            _mm256_shuffle_ps::<0b01_00_01_00>(ab_low, cd_low),
+            _mm256_shuffle_ps::<0b11_10_11_10>(ab_low, cd_low),
+            _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+            _mm256_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
+        ]
+    }
+}
