@@ -1,7 +1,6 @@
 //! Leaf blocks: primitives of one kind, eight at a time, as rows.
 
 use super::goal::Goal;
-use super::wide::on_huge_pages;
 use crate::geometry::sphere::{self, SphereRay, SphereRays};
 use crate::geometry::triangle::{self, ShearedRays, renamed};
 use crate::geometry::{Primitives, ShearedRay};
@@ -58,18 +57,6 @@ pub(super) struct Leaves {
 }
 
 impl Leaves {
-    /// Append blocks for `ids`, all of `kind`; return the number of the first.
-    pub(super) fn push(&mut self, primitives: &Primitives, scale: f32, kind: LeafKind, ids: &[u32]) -> usize {
-        let chunks = ids.chunks(BLOCK);
-        match kind {
-            LeafKind::Triangles => {
-                extend(&mut self.triangles, chunks.map(|c| TriangleBlock::new(primitives, scale, c)))
-            }
-            LeafKind::Spheres => extend(&mut self.spheres, chunks.map(|c| SphereBlock::new(primitives, scale, c))),
-            LeafKind::Shapes => extend(&mut self.shapes, chunks.map(|c| ShapeBlock { primitive: padded_ids(c) })),
-        }
-    }
-
     /// Copy the coordinates of all primitives anew, as they are now; those that became degenerate are never hit.
     pub(super) fn update(&mut self, primitives: &Primitives, scale: f32) {
         use rayon::prelude::*;
@@ -95,26 +82,10 @@ impl Leaves {
             .filter(|&id| id != NONE)
     }
 
-    /// The same blocks on huge pages.
-    pub(super) fn on_huge_pages(self) -> Self {
-        Self {
-            triangles: on_huge_pages(self.triangles),
-            spheres: on_huge_pages(self.spheres),
-            shapes: on_huge_pages(self.shapes),
-        }
-    }
-
     /// Bytes of all blocks.
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.triangles[..]) + size_of_val(&self.spheres[..]) + size_of_val(&self.shapes[..])
     }
-}
-
-/// Append `items`; return the index of the first.
-fn extend<T>(all: &mut Vec<T>, items: impl Iterator<Item = T>) -> usize {
-    let first = all.len();
-    all.extend(items);
-    first
 }
 
 /// The numbers before the unused lanes.
@@ -141,7 +112,10 @@ fn padded_ids(ids: &[u32]) -> [u32; BLOCK] {
 }
 
 impl TriangleBlock {
-    fn new(primitives: &Primitives, scale: f32, ids: &[u32]) -> Self {
+    /// No triangles.
+    pub(super) const EMPTY: Self = Self { rows: [[f32::NAN; BLOCK]; 9], primitive: [NONE; BLOCK] };
+
+    pub(super) fn new(primitives: &Primitives, scale: f32, ids: &[u32]) -> Self {
         let mut rows = [[f32::NAN; BLOCK]; 9];
         for (lane, &id) in ids.iter().enumerate() {
             for (vertex, position) in primitives.triangle(id as usize).vertices.into_iter().enumerate() {
@@ -193,7 +167,11 @@ impl TriangleBlock {
 }
 
 impl SphereBlock {
-    fn new(primitives: &Primitives, scale: f32, ids: &[u32]) -> Self {
+    /// No spheres.
+    pub(super) const EMPTY: Self =
+        Self { center: [[f32::NAN; BLOCK]; 3], radius_squared: [f32::NAN; BLOCK], primitive: [NONE; BLOCK] };
+
+    pub(super) fn new(primitives: &Primitives, scale: f32, ids: &[u32]) -> Self {
         let mut block =
             Self { center: [[f32::NAN; BLOCK]; 3], radius_squared: [f32::NAN; BLOCK], primitive: padded_ids(ids) };
         for (lane, &id) in ids.iter().enumerate() {
@@ -258,6 +236,13 @@ impl SphereBlock {
 }
 
 impl ShapeBlock {
+    /// No primitives.
+    pub(super) const EMPTY: Self = Self { primitive: [NONE; BLOCK] };
+
+    pub(super) fn new(ids: &[u32]) -> Self {
+        Self { primitive: padded_ids(ids) }
+    }
+
     /// The primitives, without the unused lanes.
     pub(super) fn ids(&self) -> impl Iterator<Item = u32> {
         self.primitive.into_iter().filter(|&id| id != NONE)

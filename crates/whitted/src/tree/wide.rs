@@ -1,6 +1,6 @@
 //! The production tree: nodes of 16 children with tight boxes.
 
-use super::build::{self, BuildOptions, Reference, Subtree};
+use super::build::{self, BuildOptions};
 use super::leaf::{LeafKind, Leaves};
 use super::{TreeKind, validate};
 use crate::geometry::Primitives;
@@ -69,7 +69,7 @@ impl Child {
         Self(index as u32)
     }
 
-    fn leaf(kind: LeafKind, first: usize, count: usize) -> Self {
+    pub(super) fn leaf(kind: LeafKind, first: usize, count: usize) -> Self {
         assert!(first < MAX_BLOCK && (1..=MAX_LEAF_BLOCKS).contains(&count), "leaf fits its fields");
         Self(1 << 31 | (kind as u32) << 29 | (count as u32 - 1) << 25 | first as u32)
     }
@@ -90,7 +90,8 @@ impl Child {
 }
 
 impl Node {
-    const EMPTY: Self = Self {
+    /// No children.
+    pub(super) const EMPTY: Self = Self {
         planes: [
             [f32::INFINITY; WIDTH],
             [f32::INFINITY; WIDTH],
@@ -189,21 +190,9 @@ impl Tree {
         };
         tree.fit_scale(primitives.bounds());
         if options.kind != TreeKind::None {
-            let binary = build::build(primitives, tree.scale, options);
-            tree.report.dropped = binary.dropped;
-            match &binary.root {
-                Some(root) => tree.flatten(primitives, root, &binary.references),
-                None => {
-                    let mut node = Node::EMPTY;
-                    node.sort();
-                    tree.nodes.push(node);
-                    tree.report.depth = 1;
-                }
-            }
+            let flat = build::build(primitives, tree.scale, tree.padding(), options);
+            (tree.nodes, tree.leaves, tree.report) = (flat.nodes, flat.leaves, flat.report);
         }
-        tree.nodes = on_huge_pages(tree.nodes);
-        tree.leaves = tree.leaves.on_huge_pages();
-        tree.report.nodes = tree.nodes.len();
         tree.report.bytes = size_of_val(&tree.nodes[..]) + tree.leaves.bytes();
         tree
     }
@@ -214,9 +203,14 @@ impl Tree {
         self.max_coordinate = bounds.max_abs() * self.scale;
     }
 
+    /// By how much boxes grow.
+    fn padding(&self) -> f32 {
+        PADDING * self.max_coordinate
+    }
+
     /// The box of a lane around what lies within `bounds`, in the tree's coordinates.
     pub(super) fn padded(&self, bounds: Aabb) -> Aabb {
-        bounds.grown(PADDING * self.max_coordinate)
+        bounds.grown(self.padding())
     }
 
     /// Which splits were allowed.
@@ -276,49 +270,6 @@ impl Tree {
     pub fn validate(&self, primitives: &Primitives) -> Result<(), String> {
         validate::validate(self, primitives)
     }
-
-    /// Turn the binary tree into wide nodes, children before parents being numbered later.
-    fn flatten(&mut self, primitives: &Primitives, root: &Subtree, references: &[Reference]) {
-        // Each entry: the subtrees that one node gathers, its index and its level.
-        let mut pending = vec![(root, 0, 1)];
-        self.nodes.push(Node::EMPTY);
-        while let Some((subtree, index, level)) = pending.pop() {
-            self.report.depth = self.report.depth.max(level);
-            let mut node = Node::EMPTY;
-            for (lane, child) in build::gather(subtree, WIDTH).into_iter().enumerate() {
-                let bounds = self.padded(child.bounds());
-                let reference = match child {
-                    Subtree::Leaf { kind, first, count, .. } => {
-                        self.leaf(primitives, *kind, &references[*first..*first + *count])
-                    }
-                    Subtree::Interior { .. } => {
-                        self.nodes.push(Node::EMPTY);
-                        pending.push((child, self.nodes.len() - 1, level + 1));
-                        Child::interior(self.nodes.len() - 1)
-                    }
-                };
-                node.set(lane, bounds, reference);
-            }
-            node.sort();
-            self.nodes[index] = node;
-        }
-    }
-
-    fn leaf(&mut self, primitives: &Primitives, kind: LeafKind, references: &[Reference]) -> Child {
-        let ids: Vec<u32> = references.iter().map(Reference::primitive).collect();
-        self.report.leaves += 1;
-        self.report.references += ids.len();
-        let first = self.leaves.push(primitives, self.scale, kind, &ids);
-        Child::leaf(kind, first, ids.len().div_ceil(super::leaf::BLOCK))
-    }
-}
-
-/// The same elements on huge pages: walks of large trees miss the translation buffers less.
-pub(super) fn on_huge_pages<T: Copy>(elements: Vec<T>) -> Vec<T> {
-    let mut moved = Vec::with_capacity(elements.len());
-    simd::advise_huge_pages(moved.spare_capacity_mut());
-    moved.extend_from_slice(&elements);
-    moved
 }
 
 /// The power of two that brings `max` into [1, 2), kept far from the ends of the exponent range.

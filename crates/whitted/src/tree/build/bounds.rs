@@ -1,6 +1,7 @@
 //! The builder's own form of a box, in which a union is eight minima: two instructions.
 
 use crate::math::Aabb;
+use simd::{F32Lanes, Simd};
 
 /// A box: lower corner, tag, negated upper corner, unused.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +48,50 @@ impl Bounds {
             out.0[i] = if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] };
         }
         out
+    }
+
+    #[inline(always)]
+    pub(super) fn lanes<S: Simd>(&self, token: S) -> S::F32x8 {
+        S::F32x8::load(token, &self.0)
+    }
+
+    #[inline(always)]
+    pub(super) fn from_lanes<F: F32Lanes<Array = [f32; 8]>>(lanes: F) -> Self {
+        let mut bounds = Self::EMPTY;
+        bounds.set_lanes(lanes);
+        bounds
+    }
+
+    #[inline(always)]
+    pub(super) fn set_lanes<F: F32Lanes<Array = [f32; 8]>>(&mut self, lanes: F) {
+        lanes.store(&mut self.0);
+    }
+
+    /// Lower corner, tag.
+    #[inline(always)]
+    fn lower<S: Simd>(&self, token: S) -> S::F32x4 {
+        S::F32x4::load_slice(token, &self.0[..4])
+    }
+
+    /// Negated upper corner, unused.
+    #[inline(always)]
+    fn negated_upper<S: Simd>(&self, token: S) -> S::F32x4 {
+        S::F32x4::load_slice(token, &self.0[4..])
+    }
+
+    /// Twice the centre; the last lane is anything.
+    #[inline(always)]
+    pub(super) fn center2_lanes<S: Simd>(&self, token: S) -> S::F32x4 {
+        self.lower(token) - self.negated_upper(token)
+    }
+
+    /// [`half_area`](Self::half_area) of a box that is empty on all axes or none.
+    #[inline(always)]
+    pub(super) fn half_area_lanes<S: Simd>(&self, token: S) -> f32 {
+        let size = (-self.negated_upper(token) - self.lower(token)).max(S::F32x4::splat(token, 0.0));
+        let mut sides = [0.0; 4];
+        (size * token.yzx(size)).store(&mut sides);
+        sides[0] + sides[1] + sides[2]
     }
 
     /// Grow by a point.

@@ -2,7 +2,8 @@
 //!
 //! In the tree's scale and in `f32`: an edge point is off by a few ulp, which the padding of the boxes covers.
 
-use super::{Bounds, Builder, Reference};
+use super::reference::Reference;
+use super::{Bounds, Builder};
 use crate::geometry::Kind;
 
 /// A primitive in the form in which it is clipped.
@@ -36,7 +37,7 @@ impl Solid {
     /// The box of the part of a reference that lies between two planes across `axis`; may be empty.
     #[inline(always)]
     pub(super) fn slab(&self, reference: &Reference, axis: usize, lo: f32, hi: f32) -> Bounds {
-        let mut cut = reference.bounds;
+        let mut cut = *reference.bounds();
         cut.set_lo(axis, cut.lo(axis).max(lo));
         cut.set_hi(axis, cut.hi(axis).min(hi));
         match self {

@@ -1,4 +1,5 @@
-//! The builder: a binary tree by the surface area heuristic, in which object splits and spatial (kd) splits compete.
+//! The builder: a binary tree by the surface area heuristic, in which object splits and spatial (kd) splits compete, made
+//! wide in the cheapest way.
 //!
 //! Object splits divide the references between two boxes that may overlap; spatial splits cut space by a plane and
 //! references with it (Havran 2000; as a competitor to object splits: Stich, Friedrich, Dietrich, "Spatial Splits in
@@ -8,19 +9,28 @@
 //! Work happens in one array with room to spare: a node owns a slice of it, hands parts of the room to its children,
 //! and may only cut references while there is room left. That bounds references for any input.
 
+mod binary;
 mod bounds;
 mod clip;
 mod cost;
+mod flatten;
 mod object_split;
+mod plan;
+mod reference;
 mod spatial_split;
 
 use super::TreeKind;
 use super::leaf::{BLOCK, LeafKind};
 use super::wide::MAX_LEAF_BLOCKS;
 use crate::geometry::{Kind, Primitives};
-use crate::math::Aabb;
+use binary::{BinaryNode, Content};
 pub(super) use bounds::Bounds;
+pub(super) use flatten::Flat;
 use object_split::ObjectSplit;
+use plan::Costs;
+use rayon::prelude::*;
+use reference::{Reference, around, partition};
+use simd::Level;
 use spatial_split::SpatialSplit;
 
 /// How to build a tree.
@@ -46,100 +56,39 @@ impl From<TreeKind> for BuildOptions {
     }
 }
 
-/// A primitive, or the part of it that lies in one cell: its box, tagged with its number.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reference {
-    bounds: Bounds,
-}
-
-const _: () = assert!(size_of::<Reference>() == 32, "half a cache line");
-
-impl Reference {
-    /// Fills the spare room of the array.
-    const NONE: Self = Self { bounds: Bounds::EMPTY };
-
-    fn new(bounds: Aabb, primitive: u32) -> Self {
-        Self { bounds: Bounds::new(bounds).tagged(primitive) }
-    }
-
-    fn with_bounds(self, bounds: Bounds) -> Self {
-        Self { bounds: bounds.tagged(self.primitive()) }
-    }
-
-    pub(super) fn primitive(&self) -> u32 {
-        self.bounds.tag()
-    }
-}
-
-/// The box around references.
-fn around(references: &[Reference]) -> Bounds {
-    let mut bounds = Bounds::EMPTY;
-    for reference in references {
-        bounds = bounds.union(reference.bounds);
-    }
-    bounds
-}
-
-/// A node of the binary tree with everything under it.
-#[derive(Debug)]
-pub(super) enum Subtree {
-    Leaf { bounds: Aabb, kind: LeafKind, first: usize, count: usize },
-    Interior { bounds: Aabb, children: Box<[Subtree; 2]> },
-}
-
-impl Subtree {
-    pub(super) fn bounds(&self) -> Aabb {
-        match self {
-            Self::Leaf { bounds, .. } | Self::Interior { bounds, .. } => *bounds,
-        }
-    }
-
-    fn join(left: Self, right: Self) -> Self {
-        Self::Interior { bounds: left.bounds().union(right.bounds()), children: Box::new([left, right]) }
-    }
-}
-
-/// What the builder makes: leaves name ranges of `references`, which has gaps.
-pub(super) struct Binary {
-    /// `None` if there is nothing to hit.
-    pub root: Option<Subtree>,
-    pub references: Vec<Reference>,
-    /// Degenerate primitives left out.
-    pub dropped: usize,
-}
-
-/// Subtrees of `root` for one wide node: keeps opening the interior one of largest area until there are `width`.
-pub(super) fn gather(root: &Subtree, width: usize) -> Vec<&Subtree> {
-    let mut gathered = vec![root];
-    while gathered.len() < width {
-        let area = |i: &usize| gathered[*i].bounds().half_area();
-        let interior = |i: &usize| matches!(gathered[*i], Subtree::Interior { .. });
-        let Some(largest) = (0..gathered.len()).filter(interior).max_by(|a, b| area(a).total_cmp(&area(b))) else {
-            break;
-        };
-        if let Subtree::Interior { children, .. } = gathered[largest] {
-            gathered[largest] = &children[0];
-            gathered.insert(largest + 1, &children[1]);
-        }
-    }
-    gathered
-}
-
-/// Build the binary tree over all sound bounded primitives, in coordinates multiplied by `scale`.
-pub(super) fn build(primitives: &Primitives, scale: f32, options: &BuildOptions) -> Binary {
-    let mut references: Vec<Reference> = (0..primitives.bounded_count() as u32)
-        .filter_map(|primitive| {
-            let bounds = primitives.primitive_bounds(primitive)?;
-            Some(Reference::new(Aabb::new(bounds.lo * scale, bounds.hi * scale), primitive))
-        })
-        .collect();
+/// Build the wide tree over all sound bounded primitives, in coordinates multiplied by `scale`; every box of the tree
+/// grows by `padding`.
+pub(super) fn build(primitives: &Primitives, scale: f32, padding: f32, options: &BuildOptions) -> Flat {
+    let mut references = sound_references(primitives, scale);
     let count = references.len();
     let dropped = primitives.bounded_count() - count;
+    if count == 0 {
+        return Flat::empty(dropped);
+    }
+    let bounds = around_all(&references);
     references.resize(count + spare_room(options.kind, count), Reference::NONE);
-    let root_area = around(&references[..count]).half_area();
-    let builder = Builder { primitives, scale, options, root_area };
-    let root = (count > 0).then(|| builder.node(Cell { references: &mut references, count, first: 0, level: 0 }));
-    Binary { root, references, dropped }
+    let builder = Builder { primitives, scale, options, root_area: bounds.half_area(), level: Level::best() };
+    let mut pieces = Vec::new();
+    builder.grow(Cell { references: &mut references, count, first: 0, level: 0, bounds }, &mut pieces);
+    let nodes = pieces.concat();
+    drop(pieces);
+    flatten::flatten(primitives, scale, padding, &nodes, &references, dropped)
+}
+
+/// References to all primitives that can be hit, in their order.
+fn sound_references(primitives: &Primitives, scale: f32) -> Vec<Reference> {
+    let reference = |primitive: u32| {
+        primitives.primitive_bounds(primitive).map_or(Reference::NONE, |b| Reference::new(b, primitive).scaled(scale))
+    };
+    let count = primitives.bounded_count() as u32;
+    let mut references: Vec<Reference> = Vec::new();
+    (0..count).into_par_iter().with_min_len(PARALLEL).map(reference).collect_into_vec(&mut references);
+    references.retain(|r| !r.is_none());
+    references
+}
+
+fn around_all(references: &[Reference]) -> Bounds {
+    references.par_chunks(PARALLEL).map(around).reduce(|| Bounds::EMPTY, Bounds::union)
 }
 
 /// How many references spatial splits may add in all.
@@ -157,6 +106,7 @@ struct Builder<'a> {
     scale: f32,
     options: &'a BuildOptions,
     root_area: f32,
+    level: Level,
 }
 
 /// The references of a node: the first `count` of a slice whose rest is room, starting at `first` of the whole array.
@@ -165,6 +115,7 @@ struct Cell<'a> {
     count: usize,
     first: usize,
     level: usize,
+    bounds: Bounds,
 }
 
 impl Cell<'_> {
@@ -177,6 +128,19 @@ impl Cell<'_> {
     }
 }
 
+/// What a parent needs to know of a finished subtree.
+struct Grown {
+    bounds: Bounds,
+    costs: Costs,
+    /// Leaves of the binary tree.
+    leaves: usize,
+    references: usize,
+    /// `None` for several.
+    kind: Option<LeafKind>,
+    /// Nodes of the binary tree.
+    nodes: usize,
+}
+
 /// Below this level splits halve the references whatever they cost, so that no input makes the tree deep.
 const MAX_COSTED_LEVEL: usize = 96;
 
@@ -185,6 +149,9 @@ const PARALLEL: usize = 4096;
 
 /// So few references are not divided: half a block costs as much as a whole one.
 const MIN_SPLIT: usize = 4;
+
+/// Larger leaves are never made from smaller ones.
+const MAX_MERGED: usize = 4 * BLOCK;
 
 /// Spatial splits are tried where the boxes of the best object split overlap by more than this share of the root's
 /// area (Stich et al. 2009, §4.5) ...
@@ -203,31 +170,62 @@ enum Split {
 }
 
 impl Builder<'_> {
-    fn node(&self, cell: Cell<'_>) -> Subtree {
-        let bounds = around(cell.used());
-        let Some(split) = self.choose(&cell, bounds) else {
-            return self.leaf(cell);
-        };
+    /// Build the subtree of a cell, in parallel if that is worth it, as pieces of the array of nodes.
+    fn grow(&self, cell: Cell<'_>, pieces: &mut Vec<Vec<BinaryNode>>) -> Grown {
+        if cell.count <= PARALLEL {
+            let mut nodes = Vec::new();
+            let grown = self.node(cell, &mut nodes);
+            pieces.push(nodes);
+            return grown;
+        }
+        let split = self.choose(&cell).unwrap_or(Split::Middle);
         let (left, right) = self.apply(split, cell);
-        let (left, right) = if left.count + right.count > PARALLEL {
-            rayon::join(|| self.node(left), || self.node(right))
-        } else {
-            (self.node(left), self.node(right))
-        };
-        Subtree::join(left, right)
+        let mut right_pieces = Vec::new();
+        let (left, right) = rayon::join(|| self.grow(left, pieces), || self.grow(right, &mut right_pieces));
+        pieces.append(&mut right_pieces);
+        let mut parent = Vec::new();
+        let grown = self.join(left, right, &mut parent);
+        pieces.push(parent);
+        grown
     }
 
-    /// The cheapest split, or `None` where a leaf is cheaper still.
-    fn choose(&self, cell: &Cell<'_>, bounds: Bounds) -> Option<Split> {
-        let count = cell.count;
-        let leaf_cost = cost::leaf(self.options, count);
-        let fits_leaf = count <= MAX_LEAF_BLOCKS * BLOCK;
+    /// Build the subtree of a cell.
+    fn node(&self, cell: Cell<'_>, nodes: &mut Vec<BinaryNode>) -> Grown {
+        let Some(split) = self.choose(&cell) else {
+            return self.leaf(cell, nodes);
+        };
+        let (left, right) = self.apply(split, cell);
+        let left = self.node(left, nodes);
+        let right = self.node(right, nodes);
+        self.join(left, right, nodes)
+    }
+
+    /// Append the parent of the two subtrees that end `nodes`.
+    fn join(&self, left: Grown, right: Grown, nodes: &mut Vec<BinaryNode>) -> Grown {
+        let bounds = left.bounds.union(right.bounds);
+        let references = left.references + right.references;
+        let kind = left.kind.filter(|_| left.kind == right.kind);
+        let may_merge = kind.is_some() && references <= MAX_MERGED;
+        let area = bounds.half_area();
+        let leaf_cost = if may_merge { area * cost::blocks(references) } else { f32::INFINITY };
+        let (costs, plan) = plan::join(self.level, area, [&left.costs, &right.costs], left.leaves, leaf_cost);
+        let content = Content::Interior { right: right.nodes as u32, plan };
+        nodes.push(BinaryNode { bounds: bounds.to_aabb(), content });
+        let leaves = left.leaves + right.leaves;
+        Grown { bounds, costs, leaves, references, kind, nodes: left.nodes + right.nodes + 1 }
+    }
+
+    /// The cheapest split, or `None` where there should be a leaf.
+    fn choose(&self, cell: &Cell<'_>) -> Option<Split> {
+        let Cell { count, bounds, .. } = *cell;
         if count <= MIN_SPLIT || cell.level >= MAX_COSTED_LEVEL {
             return (count > BLOCK).then_some(Split::Middle);
         }
-        let object = object_split::find(self.options, cell.used(), bounds);
+        let leaf_cost = cost::leaf(self.options, count);
+        let fits_leaf = count <= MAX_LEAF_BLOCKS * BLOCK;
+        let object = object_split::find(self.level, self.options, cell.used(), bounds);
         let spatial =
-            self.wants_spatial(object.as_ref(), bounds.half_area()).then(|| self.find_spatial(cell, bounds)).flatten();
+            self.wants_spatial(object.as_ref(), bounds.half_area()).then(|| self.find_spatial(cell)).flatten();
         let spatial_cost = spatial.as_ref().map_or(f32::INFINITY, |s| s.cost);
         // The kd tree takes object splits only where no plane helps and the leaf would be too large.
         let prefer_spatial = self.options.kind == TreeKind::Kd && spatial_cost < leaf_cost;
@@ -256,52 +254,70 @@ impl Builder<'_> {
         }
     }
 
-    fn find_spatial(&self, cell: &Cell<'_>, bounds: Bounds) -> Option<SpatialSplit> {
-        spatial_split::find(self, cell.used(), bounds).filter(|split| split.added <= cell.room())
+    fn find_spatial(&self, cell: &Cell<'_>) -> Option<SpatialSplit> {
+        spatial_split::find(self, cell.used(), cell.bounds).filter(|split| split.added <= cell.room())
     }
 
     /// Divide the references and the room between two children.
     fn apply<'c>(&self, split: Split, cell: Cell<'c>) -> (Cell<'c>, Cell<'c>) {
-        let Cell { references, count, first, level } = cell;
+        let Cell { references, count, first, level, .. } = cell;
         let mut cut_off = Vec::new();
-        let left_count = match split {
+        let mut left_count = match &split {
             Split::Object(split) => partition(&mut references[..count], |r| split.is_left(r)),
             Split::Middle => count / 2,
-            Split::Spatial(split) => spatial_split::cut(self, &split, &mut references[..count], &mut cut_off),
+            Split::Spatial(split) => spatial_split::cut(self, split, &mut references[..count], &mut cut_off),
         };
-        let right_count = count - left_count + cut_off.len();
-        debug_assert!(left_count > 0 && right_count > 0, "a split leaves no side empty");
-        let room = references.len() - left_count - right_count;
-        let left_room = room * left_count / (left_count + right_count);
-        let (left_len, whole_right) = (left_count + left_room, count - left_count);
-        references.copy_within(left_count..count, left_len);
+        let total = count + cut_off.len();
+        references[count..total].copy_from_slice(&cut_off);
+        if left_count == 0 || left_count == total {
+            // What the plane was to cut off turned out to be empty.
+            left_count = total / 2;
+        }
+        let right_count = total - left_count;
+        let room = references.len() - total;
+        let left_room = (room as u64 * left_count as u64 / total as u64) as usize;
+        let left_len = left_count + left_room;
+        if left_room > 0 {
+            references.copy_within(left_count..total, left_len);
+        }
         let (left, right) = references.split_at_mut(left_len);
-        right[whole_right..right_count].copy_from_slice(&cut_off);
+        let [left_bounds, right_bounds] = match split {
+            Split::Object(split) => split.sides,
+            _ => [around(&left[..left_count]), around(&right[..right_count])],
+        };
+        let level = level + 1;
         (
-            Cell { references: left, count: left_count, first, level: level + 1 },
-            Cell { references: right, count: right_count, first: first + left_len, level: level + 1 },
+            Cell { references: left, count: left_count, first, level, bounds: left_bounds },
+            Cell { references: right, count: right_count, first: first + left_len, level, bounds: right_bounds },
         )
     }
 
     /// Leaves hold one kind each and a bounded number of blocks: make as many as that takes.
-    fn leaf(&self, cell: Cell<'_>) -> Subtree {
+    fn leaf(&self, cell: Cell<'_>, nodes: &mut Vec<BinaryNode>) -> Grown {
         let Cell { references, count, first, .. } = cell;
         let used = &mut references[..count];
         used.sort_unstable_by_key(Reference::primitive);
-        let mut leaves = Vec::new();
-        let mut start = 0;
+        let mut joined: Option<Grown> = None;
+        let mut start = first;
         for run in used.chunk_by(|a, b| self.kind(a) == self.kind(b)) {
             for part in run.chunks(MAX_LEAF_BLOCKS * BLOCK) {
-                leaves.push(Subtree::Leaf {
-                    bounds: around(part).to_aabb(),
-                    kind: self.kind(&part[0]),
-                    first: first + start,
-                    count: part.len(),
-                });
+                let leaf = self.one_leaf(part, start, nodes);
                 start += part.len();
+                joined = Some(match joined {
+                    Some(left) => self.join(left, leaf, nodes),
+                    None => leaf,
+                });
             }
         }
-        leaves.into_iter().reduce(Subtree::join).expect("a cell has at least one reference")
+        joined.expect("a cell has at least one reference")
+    }
+
+    fn one_leaf(&self, references: &[Reference], first: usize, nodes: &mut Vec<BinaryNode>) -> Grown {
+        let (bounds, kind, count) = (around(references), self.kind(&references[0]), references.len());
+        let content = Content::Leaf { first: first as u32, count: count as u32, kind };
+        nodes.push(BinaryNode { bounds: bounds.to_aabb(), content });
+        let costs = [bounds.half_area() * cost::blocks(count); _];
+        Grown { bounds, costs, leaves: 1, references: count, kind: Some(kind), nodes: 1 }
     }
 
     fn kind(&self, reference: &Reference) -> LeafKind {
@@ -311,18 +327,4 @@ impl Builder<'_> {
             Kind::Shape(_) | Kind::Plane(_) => LeafKind::Shapes,
         }
     }
-}
-
-/// Bring the references for which `is_left` holds to the front; return how many. Keeps no order.
-fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
-    let (mut front, mut back) = (0, references.len());
-    while front < back {
-        if is_left(&references[front]) {
-            front += 1;
-        } else {
-            back -= 1;
-            references.swap(front, back);
-        }
-    }
-    front
 }

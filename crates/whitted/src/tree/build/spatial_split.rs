@@ -1,9 +1,10 @@
 //! Spatial splits: by a plane, cutting what straddles it.
 
-use super::{Bounds, Builder, Reference, cost};
+use super::reference::Reference;
+use super::{Bounds, Builder, cost};
 
 /// Most bins per axis; planes lie on their borders.
-const MAX_BINS: usize = 32;
+const MAX_BINS: usize = 16;
 
 /// Bins for a number of references.
 fn bin_count(references: usize) -> usize {
@@ -77,12 +78,12 @@ impl Planes {
 
 /// Chop a reference at every plane that it straddles and add the pieces to their bins.
 fn fill(builder: &Builder<'_>, bins: &mut [Bin; MAX_BINS], reference: &Reference, planes: &Planes, axis: usize) {
-    let first = planes.bin(reference.bounds.lo(axis)) % MAX_BINS;
-    let last = planes.bin(reference.bounds.hi(axis)) % MAX_BINS;
+    let first = planes.bin(reference.bounds().lo(axis)) % MAX_BINS;
+    let last = planes.bin(reference.bounds().hi(axis)) % MAX_BINS;
     bins[first].starts += 1;
     bins[last].ends += 1;
     if first == last {
-        bins[first].bounds = bins[first].bounds.union(reference.bounds);
+        bins[first].bounds = bins[first].bounds.union(*reference.bounds());
         return;
     }
     let solid = builder.solid(reference);
@@ -132,11 +133,11 @@ pub(super) fn cut(
     cut_off: &mut Vec<Reference>,
 ) -> usize {
     let (axis, position) = (split.axis, split.position);
-    let mut left_count = super::partition(references, |r| r.bounds.lo(axis) < position);
+    let mut left_count = super::partition(references, |r| r.bounds().lo(axis) < position);
     let mut index = 0;
     while index < left_count {
         let whole = references[index];
-        if whole.bounds.hi(axis) <= position {
+        if whole.bounds().hi(axis) <= position {
             index += 1;
             continue;
         }
@@ -165,7 +166,7 @@ fn halves(builder: &Builder<'_>, reference: &Reference, axis: usize, position: f
         return (left, right);
     }
     // Rounding lost the sliver: keep the boxes of the plain cut.
-    let (mut left, mut right) = (reference.bounds, reference.bounds);
+    let (mut left, mut right) = (*reference.bounds(), *reference.bounds());
     left.set_hi(axis, position);
     right.set_lo(axis, position);
     (left, right)
