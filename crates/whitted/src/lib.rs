@@ -2,7 +2,11 @@
 //!
 //! # What this crate knows
 //! Rays, primitives, trees, surfaces, scenes and the render loop, in this order of layers:
-//! [`math`] ← [`ray`] ← [`geometry`] ← { [`tree`], [`shading`] } ← [`scene`] ← [`render`].
+//! [`math`] ← [`ray`] ← [`geometry`] ← { [`tree`], [`shading`] } ← { [`scene`], [`query`] } ← [`render`].
+//!
+//! # Where to begin
+//! * To ask what rays hit: [`query::RayScene`].
+//! * To render: [`scene::Scene`], [`scene::Prepared`], [`render::render`].
 //!
 //! # Invariants
 //! * It opens no file, prints nothing, reads no environment and asks no clock.
@@ -15,6 +19,7 @@
 
 pub mod geometry;
 pub mod math;
+pub mod query;
 pub mod ray;
 pub mod render;
 pub mod scene;

@@ -1,7 +1,9 @@
 //! Rays and hits, one by one and as structures of arrays.
 
+mod hits;
 mod view;
 
+pub use hits::{HitLists, HitsMut};
 pub(crate) use view::lanes;
 pub use view::{Rays, Row};
 
@@ -29,14 +31,46 @@ pub struct Ray {
 
 impl Ray {
     /// The half-line from `origin` along `direction`: `t` from 0 to infinity.
-    pub const fn new(origin: Vec3f, direction: Vec3f) -> Self {
-        Self { origin, direction, t_min: 0.0, t_max: f32::INFINITY }
+    pub fn new(origin: impl Into<Vec3f>, direction: impl Into<Vec3f>) -> Self {
+        Self { origin: origin.into(), direction: direction.into(), t_min: 0.0, t_max: f32::INFINITY }
+    }
+
+    /// The segment between two points: `t` is 0 at `from` and 1 at `to`.
+    pub fn between(from: impl Into<Vec3f>, to: impl Into<Vec3f>) -> Self {
+        let (origin, to) = (from.into(), to.into());
+        Self { origin, direction: to - origin, t_min: 0.0, t_max: 1.0 }
+    }
+
+    /// The ray with a mask: it sees only what has a bit in common with it.
+    pub const fn with_mask(self, mask: u32) -> MaskedRay {
+        MaskedRay { ray: self, mask }
     }
 
     /// The point at parameter `t`.
     #[inline(always)]
     pub fn at(&self, t: f32) -> Vec3f {
         self.origin + self.direction * t
+    }
+}
+
+/// A ray that sees only what has a bit in common with its mask.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaskedRay {
+    /// The ray.
+    pub ray: Ray,
+    /// What it sees.
+    pub mask: u32,
+}
+
+impl From<Ray> for MaskedRay {
+    fn from(ray: Ray) -> Self {
+        ray.with_mask(u32::MAX)
+    }
+}
+
+impl From<&Ray> for MaskedRay {
+    fn from(ray: &Ray) -> Self {
+        (*ray).into()
     }
 }
 

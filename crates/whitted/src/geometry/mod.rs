@@ -8,6 +8,7 @@ mod cone;
 mod cylinder;
 mod disc;
 mod frustum;
+mod passage;
 mod plane;
 pub(crate) mod primitives;
 mod refine;
@@ -23,6 +24,7 @@ pub use disc::Disc;
 pub use plane::Plane;
 pub use primitives::{Kind, MeshError, Primitives};
 
+pub(crate) use passage::Seam;
 pub(crate) use refine::{refine, refine_one_by_one};
 pub use shape::{Crossings, Shape};
 

@@ -182,6 +182,22 @@ impl Primitives {
         Triangle { vertices: self.triangles[index].map(|vertex| self.vertices[vertex as usize]) }
     }
 
+    /// The vertices of all meshes, one after the other.
+    pub fn vertices(&self) -> &[Vec3f] {
+        &self.vertices
+    }
+
+    /// Bytes of everything stored.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.vertices[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.normals[..])
+            + size_of_val(&self.uvs[..])
+            + size_of_val(&self.spheres[..])
+            + size_of_val(&self.shapes[..])
+            + size_of_val(&self.planes[..])
+    }
+
     /// The vertices of all meshes, one after the other, to be moved; a tree over them must then be
     /// [refitted](crate::tree::Tree::refit) or built anew.
     pub fn vertices_mut(&mut self) -> &mut [Vec3f] {
@@ -233,7 +249,7 @@ impl Primitives {
 
     /// The parameter and the surface coordinates of a fresh hit at `t`, by double precision.
     #[inline(always)]
-    pub(super) fn refine(&self, ray: &Ray, t: f32, primitive: u32) -> Refined {
+    pub(crate) fn refine(&self, ray: &Ray, t: f32, primitive: u32) -> Refined {
         match self.kind(primitive) {
             Kind::Triangle(i) => self.triangle(i).refine(ray, t),
             Kind::Sphere(i) => Refined { t: self.spheres[i].refine(ray, t), u: 0.0, v: 0.0 },

@@ -8,7 +8,7 @@
 use super::triangle::Refined;
 use super::{Primitives, Sphere, Triangle};
 use crate::math::{Vec3, Vec3f};
-use crate::ray::{HitBatch, NONE, Ray, Rays, lanes};
+use crate::ray::{HitsMut, NONE, Ray, Rays, lanes};
 use simd::{F32Lanes, F64Lanes, Kernel, Level, MaskLanes, Simd, U32Lanes};
 use std::ops::Range;
 
@@ -16,12 +16,18 @@ use std::ops::Range;
 const STEP: usize = 8;
 
 /// Give every hit in a range of a batch its t in double precision and its surface coordinates.
-pub(crate) fn refine(level: Level, primitives: &Primitives, rays: Rays<'_>, hits: &mut HitBatch, range: Range<usize>) {
+pub(crate) fn refine(
+    level: Level,
+    primitives: &Primitives,
+    rays: Rays<'_>,
+    hits: &mut HitsMut<'_>,
+    range: Range<usize>,
+) {
     simd::dispatch(level, Refine { primitives, rays, hits, range });
 }
 
 /// As [`refine`], one hit after the other in plain Rust.
-pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: Rays<'_>, hits: &mut HitBatch, range: Range<usize>) {
+pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: Rays<'_>, hits: &mut HitsMut<'_>, range: Range<usize>) {
     for index in range {
         if hits.primitive[index] != NONE {
             let ray = rays.get(index);
@@ -31,14 +37,14 @@ pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: Rays<'_>, hits: &
     }
 }
 
-struct Refine<'a> {
+struct Refine<'a, 'h> {
     primitives: &'a Primitives,
     rays: Rays<'a>,
-    hits: &'a mut HitBatch,
+    hits: &'a mut HitsMut<'h>,
     range: Range<usize>,
 }
 
-impl Kernel for Refine<'_> {
+impl Kernel for Refine<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -89,7 +95,7 @@ fn refine_triangles<S: Simd>(
     token: S,
     primitives: &Primitives,
     rays: Rays<'_>,
-    hits: &mut HitBatch,
+    hits: &mut HitsMut<'_>,
     step: Range<usize>,
     mask: Mask<S>,
 ) {
@@ -132,7 +138,7 @@ fn refine_spheres<S: Simd>(
     token: S,
     spheres: &[Sphere],
     rays: Rays<'_>,
-    hits: &mut HitBatch,
+    hits: &mut HitsMut<'_>,
     step: Range<usize>,
     mask: Mask<S>,
     sphere: Ids<S>,
@@ -153,7 +159,7 @@ fn refine_spheres<S: Simd>(
     let nearest = o + d * middle;
     let half_chord = ((radius * radius - nearest.length_squared()) * inverse).max(zero).sqrt();
     let (near, far) = ((middle - half_chord).narrow(), (middle + half_chord).narrow());
-    let before = S::F64x8::widen(lanes(token, &hits.t, step.clone())).lt(middle);
+    let before = S::F64x8::widen(lanes(token, hits.t, step.clone())).lt(middle);
     let t = in_range(token, S::F32x8::select(before, near, far), rays, &step);
     blend(token, &mut hits.t[step], mask, t);
 }

@@ -95,7 +95,7 @@ fn difference_of_products<F: F32Lanes>(a: F, b: F, c: F, d: F) -> F {
 
 /// A vertex as seen from the ray: moved to the origin and sheared along its direction.
 #[inline(always)]
-fn sheared<F: F32Lanes>(vertex: [F; 3], origin: [F; 3], shear: [F; 3]) -> [F; 3] {
+pub(super) fn sheared<F: F32Lanes>(vertex: [F; 3], origin: [F; 3], shear: [F; 3]) -> [F; 3] {
     let z = vertex[2] - origin[2];
     [(-shear[0]).fma(z, vertex[0] - origin[0]), (-shear[1]).fma(z, vertex[1] - origin[1]), z]
 }

@@ -28,12 +28,7 @@ pub(super) fn walk<G: Goal>(
     let sound: Vec<u32> = bounded.filter(|&id| primitives.primitive_bounds(id).is_some()).collect();
     for index in 0..ranges.len() {
         let ray = batch.get(first + index);
-        let one = OneRay {
-            sheared: ShearedRay::new(ray.origin * tree.scale(), ray.direction * tree.scale()),
-            sphere: SphereRay::new(ray.origin * tree.scale(), ray.direction * tree.scale()),
-            ray,
-            scale: tree.scale(),
-        };
+        let one = OneRay::new(tree, ray);
         for &id in &sound {
             let mut limit = ranges.limit(index);
             if limit < ray.t_min {
@@ -47,6 +42,11 @@ pub(super) fn walk<G: Goal>(
     counts
 }
 
+/// All points at which the line of `ray` meets a primitive, or for a triangle the one in the range of `ray`.
+pub(super) fn crossings_of(tree: &Tree, primitives: &Primitives, ray: &Ray, id: u32) -> Crossings {
+    OneRay::new(tree, *ray).crossings(primitives, id, ray.t_max)
+}
+
 /// A ray in every form.
 struct OneRay {
     ray: Ray,
@@ -56,11 +56,27 @@ struct OneRay {
 }
 
 impl OneRay {
+    fn new(tree: &Tree, ray: Ray) -> Self {
+        let scale = tree.scale();
+        Self {
+            sheared: ShearedRay::new(ray.origin * scale, ray.direction * scale),
+            sphere: SphereRay::new(ray.origin * scale, ray.direction * scale),
+            ray,
+            scale,
+        }
+    }
+
     /// Offer the crossings with one primitive.
     fn offer<G: Goal>(&self, primitives: &Primitives, id: u32, goal: &mut G, index: usize, limit: &mut f32) {
+        let crossings = self.crossings(primitives, id, *limit);
+        walk::offer_crossings(goal, index, id, crossings, self.ray.t_min, limit);
+    }
+
+    fn crossings(&self, primitives: &Primitives, id: u32, limit: f32) -> Crossings {
         let lane = |value: f32| One::splat(Scalar, value);
-        let (t_min, t_max) = (lane(self.ray.t_min), lane(*limit));
-        let crossings = match primitives.kind(id) {
+        let (t_min, t_max) = (lane(self.ray.t_min), lane(limit));
+        let (origin, direction) = (self.ray.origin.to_f64(), self.ray.direction.to_f64());
+        match primitives.kind(id) {
             Kind::Triangle(i) => {
                 let axes = renamed(self.sheared.axis as usize);
                 let vertices = primitives.triangle(i).vertices.map(|p| axes.map(|axis| lane(p[axis] * self.scale)));
@@ -75,10 +91,9 @@ impl OneRay {
                 let (near, far) = sphere::roots(&SphereRays::splat(Scalar, &self.sphere), center, radius * radius);
                 crossings(&[near, far])
             }
-            Kind::Shape(i) => primitives.shapes()[i].crossings(self.ray.origin.to_f64(), self.ray.direction.to_f64()),
-            Kind::Plane(_) => unreachable!("planes are not bounded"),
-        };
-        walk::offer_crossings(goal, index, id, crossings, self.ray.t_min, limit);
+            Kind::Shape(i) => primitives.shapes()[i].crossings(origin, direction),
+            Kind::Plane(i) => primitives.planes()[i].crossings(origin, direction),
+        }
     }
 }
 

@@ -7,9 +7,11 @@
 //! * Boxes are padded so that no candidate is lost to rounding (`wide::PADDING`).
 //! * References, depth and memory are bounded for any input.
 
+mod all_hits;
 mod bit_set;
 mod brute_force;
 mod build;
+mod filter;
 mod goal;
 mod leaf;
 mod query;
@@ -20,6 +22,7 @@ mod wide;
 
 pub use bit_set::BitSet;
 pub use build::BuildOptions;
+pub use filter::Filter;
 pub use goal::Occlusion;
 pub use query::{Counts, Query, Scratch};
 pub use refit::RefitError;

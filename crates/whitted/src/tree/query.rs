@@ -1,10 +1,12 @@
 //! Asking a tree: batches in, answers out.
 
+use super::all_hits::Sieve;
+use super::filter::Filtered;
 use super::goal::{Any, Closest, Goal, Next};
 use super::walk::{self, Lists, PreparedRays};
-use super::{BitSet, Occlusion, Tree, TreeKind, WalkKind, brute_force};
+use super::{BitSet, Filter, Occlusion, Tree, TreeKind, WalkKind, brute_force};
 use crate::geometry::{self, Primitives};
-use crate::ray::{HitBatch, Rays};
+use crate::ray::{Hit, HitBatch, HitsMut, NONE, Ray, Rays};
 use simd::Level;
 use std::ops::{AddAssign, Range};
 
@@ -42,6 +44,7 @@ impl AddAssign for Counts {
 pub struct Scratch {
     pub(super) rays: PreparedRays,
     pub(super) lists: Lists,
+    pub(super) sieve: Sieve,
 }
 
 /// Rays that are walked together; ray numbers within such a chunk fit 16 bits.
@@ -54,15 +57,45 @@ impl Query<'_> {
     pub fn closest_hit<'r>(&self, rays: impl Into<Rays<'r>>, hits: &mut HitBatch, scratch: &mut Scratch) -> Counts {
         let rays = rays.into();
         hits.resize(rays.len());
+        hits.instance.fill(NONE);
+        self.closest_hit_into(rays, None, hits.into(), scratch)
+    }
+
+    /// As [`closest_hit`](Self::closest_hit), of what the filter lets through, into the caller's own arrays.
+    ///
+    /// # Panics
+    /// If `hits` has not room for exactly as many as there are `rays`.
+    pub fn closest_hit_into(
+        &self,
+        rays: Rays<'_>,
+        filter: Option<Filter<'_>>,
+        mut hits: HitsMut<'_>,
+        scratch: &mut Scratch,
+    ) -> Counts {
+        assert_eq!(hits.len(), rays.len(), "room for one hit of each ray");
         let mut counts = Counts::default();
         for chunk in chunks(rays.len()) {
-            hits.reset(chunk.clone());
-            let primitive = &mut hits.primitive[chunk.clone()];
-            counts += self.walk(rays, chunk.clone(), &mut Closest { primitive }, scratch);
+            hits.clear(chunk.clone());
+            let goal = Closest { primitive: &mut hits.primitive[chunk.clone()] };
+            counts += self.walk_filtered(rays, chunk.clone(), goal, filter, scratch);
             scratch.rays.found(&hits.primitive[chunk.clone()], &mut hits.t[chunk.clone()]);
-            self.refine(rays, hits, chunk);
+            self.refine(rays, &mut hits, chunk);
         }
         counts
+    }
+
+    /// The first hit of one ray that the filter lets through.
+    pub(crate) fn closest_hit_of(&self, ray: &Ray, filter: Option<Filter<'_>>, scratch: &mut Scratch) -> Hit {
+        let mut primitive = [NONE];
+        let goal = Closest { primitive: &mut primitive };
+        self.walk_filtered(ray.into(), 0..1, goal, filter, scratch);
+        if primitive[0] == NONE {
+            return Hit::MISS;
+        }
+        let mut t = [Hit::MISS.t];
+        scratch.rays.found(&primitive, &mut t);
+        let refined = self.primitives.refine(ray, t[0], primitive[0]);
+        Hit { t: refined.t, u: refined.u, v: refined.v, primitive: primitive[0], instance: NONE }
     }
 
     /// The first hit of each ray that comes after `after`, in the order of (t, primitive); advances `after` to it.
@@ -92,7 +125,7 @@ impl Query<'_> {
             for index in chunk.clone() {
                 after[index] = (hits.t[index], hits.primitive[index]);
             }
-            self.refine(rays, hits, chunk);
+            self.refine(rays, &mut hits.into(), chunk);
         }
         counts
     }
@@ -111,17 +144,57 @@ impl Query<'_> {
         let rays = rays.into();
         out.clear();
         out.resize(rays.len(), Occlusion::Clear);
+        self.occluded_into(rays, opaque, None, out, scratch)
+    }
+
+    /// As [`occluded`](Self::occluded), by what the filter lets through, into the caller's own array.
+    ///
+    /// # Panics
+    /// If `out` has not room for exactly as many as there are `rays`.
+    pub fn occluded_into(
+        &self,
+        rays: Rays<'_>,
+        opaque: Option<&BitSet>,
+        filter: Option<Filter<'_>>,
+        out: &mut [Occlusion],
+        scratch: &mut Scratch,
+    ) -> Counts {
+        assert_eq!(out.len(), rays.len(), "room for one answer to each ray");
+        out.fill(Occlusion::Clear);
         let mut counts = Counts::default();
         for chunk in chunks(rays.len()) {
             let occlusion = &mut out[chunk.clone()];
-            counts += self.walk(rays, chunk, &mut Any { occlusion, opaque }, scratch);
+            counts += self.walk_filtered(rays, chunk, Any { occlusion, opaque }, filter, scratch);
         }
         counts
     }
 
+    fn walk_filtered<G: Goal>(
+        &self,
+        rays: Rays<'_>,
+        chunk: Range<usize>,
+        mut goal: G,
+        filter: Option<Filter<'_>>,
+        scratch: &mut Scratch,
+    ) -> Counts {
+        match filter {
+            None => self.walk(rays, chunk, &mut goal, scratch),
+            Some(filter) => {
+                let mut goal = Filtered { goal, first: chunk.start, filter };
+                self.walk(rays, chunk, &mut goal, scratch)
+            }
+        }
+    }
+
     /// Walk one chunk: planes first, since they lie outside the tree and shorten the rays, then the tree.
-    fn walk<G: Goal>(&self, rays: Rays<'_>, chunk: Range<usize>, goal: &mut G, scratch: &mut Scratch) -> Counts {
-        let Scratch { rays: prepared, lists } = scratch;
+    pub(super) fn walk<G: Goal>(
+        &self,
+        rays: Rays<'_>,
+        chunk: Range<usize>,
+        goal: &mut G,
+        scratch: &mut Scratch,
+    ) -> Counts {
+        let Scratch { rays: prepared, lists, .. } = scratch;
         let first = chunk.start;
         prepared.begin(self.level, self.tree, self.primitives, rays, chunk);
         let mut counts = walk::planes(self.primitives, prepared, goal);
@@ -146,7 +219,7 @@ impl Query<'_> {
     }
 
     /// Give every hit of a chunk its t in double precision and its surface coordinates.
-    fn refine(&self, rays: Rays<'_>, hits: &mut HitBatch, chunk: Range<usize>) {
+    fn refine(&self, rays: Rays<'_>, hits: &mut HitsMut<'_>, chunk: Range<usize>) {
         match self.tree.kind() {
             TreeKind::None => geometry::refine_one_by_one(self.primitives, rays, hits, chunk),
             _ => geometry::refine(self.level, self.primitives, rays, hits, chunk),
@@ -155,6 +228,6 @@ impl Query<'_> {
 }
 
 /// Cut `0..len` into chunks.
-fn chunks(len: usize) -> impl Iterator<Item = Range<usize>> {
+pub(super) fn chunks(len: usize) -> impl Iterator<Item = Range<usize>> {
     (0..len).step_by(CHUNK).map(move |start| start..len.min(start + CHUNK))
 }

@@ -124,8 +124,9 @@ impl<G: Goal> Walk<'_, G> {
 /// Test one ray against the primitives of shape blocks, one by one.
 #[inline(never)]
 fn shapes<G: Goal>(walk: &mut Walk<'_, G>, index: usize, blocks: std::ops::Range<usize>, limit: &mut f32) {
-    let ray = walk.rays.ray(index);
-    for id in walk.tree.leaves.shapes[blocks].iter().flat_map(|block| block.ids()) {
+    // A ray from so far away that its offsets overflow enters unused lanes too, whose leaf has no blocks.
+    for id in walk.tree.leaves.shapes.get(blocks).unwrap_or_default().iter().flat_map(|block| block.ids()) {
+        let ray = walk.rays.ray(index);
         let shape = &walk.primitives.shapes()[(id - walk.primitives.first_shape()) as usize];
         let crossings = shape.crossings(ray.origin.to_f64(), ray.direction.to_f64());
         offer_crossings(walk.goal, index, id, crossings, ray.t_min, limit);
