@@ -195,6 +195,9 @@ pub trait F32Lanes:
     }
     /// `self` where the mask is set, else `other`.
     fn select(mask: Self::Mask, set: Self, unset: Self) -> Self;
+    /// Store the lanes of `mask` at the front of `to`, in order and without gaps. The rest of the first `WIDTH` elements
+    /// may be overwritten with anything. Panics if there are fewer.
+    fn compress_store(self, mask: Self::Mask, to: &mut [f32]);
 
     /// The bits of the lanes.
     fn to_bits(self) -> Self::U32;
@@ -267,6 +270,10 @@ pub trait U32Lanes:
     fn lt(self, other: Self) -> Self::Mask;
     /// `self` where the mask is set, else `other`.
     fn select(mask: Self::Mask, set: Self, unset: Self) -> Self;
+
+    /// Store the lanes of `mask` at the front of `to`, in order and without gaps. The rest of the first `WIDTH` elements
+    /// may be overwritten with anything. Panics if there are fewer.
+    fn compress_store(self, mask: Self::Mask, to: &mut [u32]);
 }
 
 /// One truth value per lane.

@@ -87,6 +87,13 @@ macro_rules! vector {
         fn select(mask: Self::Mask, set: Self, unset: Self) -> Self {
             Self(V::select(mask.0, set.0, unset.0), V::select(mask.1, set.1, unset.1))
         }
+        #[inline(always)]
+        fn compress_store(self, mask: Self::Mask, to: &mut [$element]) {
+            // The upper half begins where the lower one ends, at its width or before.
+            let (low, to) = (mask.0.bits().count_ones() as usize, &mut to[..Self::WIDTH]);
+            self.0.compress_store(mask.0, to);
+            self.1.compress_store(mask.1, &mut to[low..]);
+        }
     };
 }
 

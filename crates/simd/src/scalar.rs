@@ -211,6 +211,10 @@ where
         Self(std::array::from_fn(|i| if mask.0[i] { set.0[i] } else { unset.0[i] }))
     }
     #[inline(always)]
+    fn compress_store(self, mask: ScalarMask<N>, to: &mut [f32]) {
+        compress(&self.0, &mask.0, to);
+    }
+    #[inline(always)]
     fn to_bits(self) -> ScalarU32<N> {
         ScalarU32(self.0.map(f32::to_bits))
     }
@@ -298,6 +302,22 @@ where
     #[inline(always)]
     fn select(mask: ScalarMask<N>, set: Self, unset: Self) -> Self {
         Self(std::array::from_fn(|i| if mask.0[i] { set.0[i] } else { unset.0[i] }))
+    }
+    #[inline(always)]
+    fn compress_store(self, mask: ScalarMask<N>, to: &mut [u32]) {
+        compress(&self.0, &mask.0, to);
+    }
+}
+
+/// The elements of `mask`, without gaps.
+#[inline(always)]
+fn compress<T: Copy, const N: usize>(lanes: &[T; N], mask: &[bool; N], to: &mut [T]) {
+    let to = &mut to[..N];
+    let mut count = 0;
+    for i in 0..N {
+        // Store always, advance if set: the branch would be a coin toss. The last store is at N − 1 or before.
+        to[count] = lanes[i];
+        count += usize::from(mask[i]);
     }
 }
 

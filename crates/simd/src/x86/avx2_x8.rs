@@ -1,6 +1,7 @@
 //! Eight lanes in an AVX register.
 
 use super::avx2::Avx2;
+use super::left_pack;
 use super::x4::F32x4;
 use crate::{F32Lanes, MaskLanes, U32Lanes};
 use std::arch::x86_64::*;
@@ -84,6 +85,7 @@ impl F32Lanes for F32x8 {
         from_int(a: U32x8) = _mm256_cvtepi32_ps(a);
     }
     select!(|mask, set, unset| _mm256_blendv_ps(unset, set, mask));
+    compress_store!(f32; |mask, lanes| left_pack::compress(mask, lanes));
 
     #[inline(always)]
     fn reduce_add(self) -> f32 {
@@ -133,6 +135,7 @@ impl U32Lanes for U32x8 {
         sar<N>(a) = _mm256_sra_epi32(a, _mm_cvtsi32_si128(N as i32));
     }
     select!(|mask, set, unset| _mm256_blendv_epi8(unset, set, _mm256_castps_si256(mask)));
+    compress_store!(u32; |mask, lanes| _mm256_castps_si256(left_pack::compress(mask, _mm256_castsi256_ps(lanes))));
 }
 
 impl MaskLanes for Mask8 {

@@ -84,6 +84,7 @@ impl F32Lanes for F32x16 {
         from_int(a: U32x16) = _mm512_cvtepi32_ps(a);
     }
     select!(|mask, set, unset| _mm512_mask_blend_ps(mask, unset, set));
+    compress_store!(f32; |mask, lanes| _mm512_maskz_compress_ps(mask, lanes));
 
     #[inline(always)]
     fn reduce_add(self) -> f32 {
@@ -129,6 +130,7 @@ impl U32Lanes for U32x16 {
         sar<N>(a) = _mm512_srai_epi32::<N>(a);
     }
     select!(|mask, set, unset| _mm512_mask_blend_epi32(mask, unset, set));
+    compress_store!(u32; |mask, lanes| _mm512_maskz_compress_epi32(mask, lanes));
 }
 
 impl MaskLanes for Mask16 {

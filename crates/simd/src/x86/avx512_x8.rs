@@ -84,6 +84,7 @@ impl F32Lanes for F32x8 {
         from_int(a: U32x8) = _mm256_cvtepi32_ps(a);
     }
     select!(|mask, set, unset| _mm256_mask_blend_ps(mask, unset, set));
+    compress_store!(f32; |mask, lanes| _mm256_maskz_compress_ps(mask, lanes));
 
     #[inline(always)]
     fn reduce_add(self) -> f32 {
@@ -129,6 +130,7 @@ impl U32Lanes for U32x8 {
         sar<N>(a) = _mm256_sra_epi32(a, _mm_cvtsi32_si128(N as i32));
     }
     select!(|mask, set, unset| _mm256_mask_blend_epi32(mask, unset, set));
+    compress_store!(u32; |mask, lanes| _mm256_maskz_compress_epi32(mask, lanes));
 }
 
 impl MaskLanes for Mask8 {

@@ -103,6 +103,16 @@ pub(super) fn compress_in_order(
     count
 }
 
+/// The lanes of `mask`, whose bits are all a lane's value, moved to the front.
+///
+/// # Safety
+/// The CPU must have AVX2.
+#[inline(always)]
+pub(super) unsafe fn compress(mask: __m256, lanes: __m256) -> __m256 {
+    // SAFETY: by this function's contract.
+    unsafe { _mm256_permutevar8x32_ps(lanes, load_lanes(&LANES[_mm256_movemask_ps(mask) as usize])) }
+}
+
 /// Lane numbers as integers.
 ///
 /// # Safety

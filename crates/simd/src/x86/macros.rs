@@ -104,6 +104,18 @@ macro_rules! select {
     };
 }
 
+/// `compress_store` by a shuffle of a whole register.
+macro_rules! compress_store {
+    ($element:ident; |$mask:ident, $lanes:ident| $body:expr) => {
+        #[inline(always)]
+        fn compress_store(self, mask: Self::Mask, to: &mut [$element]) {
+            let ($mask, $lanes) = (mask.0, self.0);
+            // SAFETY: `self` exists, so the CPU has the token's features.
+            Self::wrap(unsafe { $body }, self.1).store_slice(to);
+        }
+    };
+}
+
 /// Shifts by a constant, given the constant count as `$n`.
 macro_rules! shifts {
     ($($name:ident<$n:ident>($a:ident) = $body:expr;)*) => {$(

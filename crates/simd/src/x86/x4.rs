@@ -89,6 +89,10 @@ impl<S: Sse> F32Lanes for F32x4<S> {
     select!(|mask, set, unset| _mm_blendv_ps(unset, set, mask));
 
     #[inline(always)]
+    fn compress_store(self, mask: Mask4<S>, to: &mut [f32]) {
+        self.compressed(mask).store_slice(to);
+    }
+    #[inline(always)]
     fn gather(table: &[f32], index: U32x4<S>) -> Self {
         let mut lanes = [0; 4];
         index.store(&mut lanes);
@@ -119,7 +123,36 @@ impl<S: Sse> F32Lanes for F32x4<S> {
     }
 }
 
+/// For each set of four lanes, the `pshufb` control that moves the lanes of the set to the front.
+static FRONT: [[u8; 16]; 16] = front();
+
+const fn front() -> [[u8; 16]; 16] {
+    let mut table = [[0; 16]; 16];
+    let mut set = 0;
+    while set < 16 {
+        let (mut byte, mut count) = (0, 0);
+        while byte < 16 {
+            if set >> (byte / 4) & 1 != 0 {
+                table[set][count] = byte as u8;
+                count += 1;
+            }
+            byte += 1;
+        }
+        set += 1;
+    }
+    table
+}
+
 impl<S: Sse> F32x4<S> {
+    /// The lanes of `mask` moved to the front.
+    #[inline(always)]
+    fn compressed(self, mask: Mask4<S>) -> Self {
+        let control = FRONT[mask.bits() as usize & 15].as_ptr();
+        // SAFETY: `self` exists, so the CPU has the token's features; a row of the table fills a register.
+        let lanes =
+            unsafe { _mm_castsi128_ps(_mm_shuffle_epi8(_mm_castps_si128(self.0), _mm_loadu_si128(control.cast()))) };
+        Self(lanes, self.1)
+    }
     /// See [`Simd::yzx`].
     #[inline(always)]
     pub(super) fn yzx(self) -> Self {
@@ -163,6 +196,11 @@ impl<S: Sse> U32Lanes for U32x4<S> {
         sar<N>(a) = _mm_sra_epi32(a, _mm_cvtsi32_si128(N as i32));
     }
     select!(|mask, set, unset| _mm_blendv_epi8(unset, set, _mm_castps_si128(mask)));
+
+    #[inline(always)]
+    fn compress_store(self, mask: Mask4<S>, to: &mut [u32]) {
+        F32x4::from_bits(self).compressed(mask).to_bits().store_slice(to);
+    }
 
     #[inline(always)]
     fn gather(table: &[u32], index: Self) -> Self {

@@ -1,7 +1,7 @@
 //! The operations on lists and tables that a token has: appending, compressing, transposing.
 
-use crate::common::{SplitMix64, levels};
-use simd::{F32Lanes, Kernel, Level, Simd, dispatch};
+use crate::common::{ForLanes, SplitMix64, for_widths, levels};
+use simd::{F32Lanes, Kernel, Level, MaskLanes, Simd, U32Lanes, dispatch};
 
 struct Append<'a>(&'a [u16], &'a [u16], u16, &'a mut [u16]);
 
@@ -132,5 +132,32 @@ fn transposing_keeps_bits() {
             let columns = dispatch(level, Transpose([[f32::from_bits(bits); 8]; 8]));
             assert!(columns.as_flattened().iter().all(|lane| lane.to_bits() == bits), "{level} {bits:#x}");
         }
+    }
+}
+
+struct CompressStore;
+
+impl ForLanes for CompressStore {
+    fn run<F: F32Lanes>(&self, token: F::Token) {
+        let (values, numbers): ([f32; 16], [u32; 16]) =
+            (std::array::from_fn(|i| i as f32), std::array::from_fn(|i| i as u32));
+        let (values_in, numbers_in) = (F::load_slice(token, &values), F::U32::load_slice(token, &numbers));
+        for bits in 0..1u32 << F::WIDTH {
+            let mask = F::Mask::from_bits(token, bits);
+            let (mut values_out, mut numbers_out) = ([-1.0; 17], [99; 17]);
+            values_in.compress_store(mask, &mut values_out[..F::WIDTH]);
+            numbers_in.compress_store(mask, &mut numbers_out[..F::WIDTH]);
+            let kept: Vec<u32> = (0..F::WIDTH as u32).filter(|i| bits >> i & 1 != 0).collect();
+            assert_eq!(numbers_out[..kept.len()], kept, "{bits:#x}");
+            assert!(values_out.iter().zip(&kept).all(|(&value, &lane)| value == lane as f32), "{bits:#x}");
+            assert_eq!((values_out[F::WIDTH], numbers_out[F::WIDTH]), (-1.0, 99), "{bits:#x}");
+        }
+    }
+}
+
+#[test]
+fn compress_store_keeps_order_and_bounds() {
+    for level in levels() {
+        for_widths(level, &CompressStore);
     }
 }
