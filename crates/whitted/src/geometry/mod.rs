@@ -15,6 +15,7 @@ mod refine;
 mod shape;
 pub(crate) mod sphere;
 mod surface;
+pub(crate) mod surfaces;
 pub(crate) mod triangle;
 
 pub use boxed::Boxed;

@@ -209,6 +209,17 @@ impl Primitives {
         &mut self.spheres
     }
 
+    /// True if some mesh has normals.
+    pub(super) fn has_normals(&self) -> bool {
+        !self.normals.is_empty()
+    }
+
+    /// The normals of the vertices of triangle `index`; only where [`has_normals`](Self::has_normals).
+    #[inline(always)]
+    pub(super) fn corner_normals(&self, index: usize) -> [Vec3f; 3] {
+        self.triangles[index].map(|vertex| self.normals[vertex as usize])
+    }
+
     /// The spheres.
     pub fn spheres(&self) -> &[Sphere] {
         &self.spheres
@@ -287,16 +298,18 @@ impl Primitives {
     }
 }
 
+/// The unit of [`error_bound`], 2⁻²⁴, and how many there are for each length.
+pub(super) const ROUNDING_UNIT: f32 = 1.0 / (1 << 24) as f32;
+pub(super) const EXTENT_UNITS: f32 = 8.0;
+pub(super) const COORDINATE_UNITS: f32 = 4.0;
+
 /// The distance within which rays that start near a surface may be mistaken about their side of it.
 ///
 /// In units of 2⁻²⁴: a vertex of a primitive of size `extent`, seen from a point of it, is misplaced by 4 roundings of
 /// `extent` along either axis of the sheared plane, 5.7 together, and the triangle with it; the point itself by half an
 /// ulp of its largest coordinate per axis, 1.8, and its offset by as much again.
 pub(crate) fn error_bound(max_coordinate: f32, extent: f32) -> f32 {
-    const UNIT: f32 = 1.0 / (1 << 24) as f32;
-    const EXTENT_UNITS: f32 = 8.0;
-    const COORDINATE_UNITS: f32 = 4.0;
-    UNIT * (EXTENT_UNITS * extent + COORDINATE_UNITS * max_coordinate)
+    ROUNDING_UNIT * (EXTENT_UNITS * extent + COORDINATE_UNITS * max_coordinate)
 }
 
 fn extend_attribute<T: Copy>(all: &mut Vec<T>, first: usize, new: &[T], len: usize, none: T) {

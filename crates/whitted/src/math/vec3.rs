@@ -1,5 +1,6 @@
 //! Three numbers: a point, a direction or a colour; scalar or lanes by type parameter.
 
+use simd::F32Lanes;
 use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Neg, Sub};
 
 /// Three components of one type: `f32`, `f64` or SIMD lanes.
@@ -53,6 +54,20 @@ impl<T: Copy> Vec3<T> {
     }
 }
 
+impl<L: F32Lanes> Vec3<L> {
+    /// `value` in all lanes.
+    #[inline(always)]
+    pub(crate) fn lanes(token: L::Token, value: Vec3f) -> Self {
+        Self::new(L::splat(token, value.x), L::splat(token, value.y), L::splat(token, value.z))
+    }
+
+    /// The largest component by [`F32Lanes::max`].
+    #[inline(always)]
+    pub(crate) fn largest(self) -> L {
+        self.x.max(self.y).max(self.z)
+    }
+}
+
 impl<T: Copy + Mul<Output = T> + Add<Output = T>> Vec3<T> {
     /// `x·x' + y·y' + z·z'`, summed in this order.
     #[inline(always)]
@@ -77,6 +92,12 @@ impl<T: Copy + Mul<Output = T> + Sub<Output = T>> Vec3<T> {
             self.x * other.y - self.y * other.x,
         )
     }
+}
+
+/// `set` in the lanes of `mask`, else `unset`.
+#[inline(always)]
+pub(crate) fn select<L: F32Lanes>(mask: L::Mask, set: Vec3<L>, unset: Vec3<L>) -> Vec3<L> {
+    Vec3::new(L::select(mask, set.x, unset.x), L::select(mask, set.y, unset.y), L::select(mask, set.z, unset.z))
 }
 
 impl<T: Copy + Mul<Output = T>> Vec3<T> {

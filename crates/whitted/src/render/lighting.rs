@@ -1,45 +1,44 @@
 //! What lamps send to surfaces, before anything stands in the way: once for any number of points.
 
+use super::rows::{BLOCK, Rows, first_lanes};
 use super::shadow::ShadowBatch;
 use crate::geometry::triangle::ERROR_ULPS;
-use crate::math::{Vec3, Vec3f};
-use crate::ray::Ray;
+use crate::math::Vec3;
 use crate::scene::ShadowOrigin;
-use crate::shading::one::{one, value, values};
 use crate::shading::{LocalSurface, PreparedLight, lanes};
-use simd::{F32Lanes, Kernel, Level, MaskLanes, Scalar, Simd};
+use simd::{F32Lanes, Kernel, Level, MaskLanes, Simd};
 
-/// A point of a surface as lamps see it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LitPoint<T> {
-    pub(super) position: Vec3<T>,
+/// Points of surfaces as lamps see them, in lanes.
+#[derive(Clone, Copy)]
+pub(super) struct LitPoint<L> {
+    pub(super) position: Vec3<L>,
     /// Geometric unit normal on the side of the viewer.
-    pub(super) n_g: Vec3<T>,
+    pub(super) n_g: Vec3<L>,
     /// Shading unit normal on the side of the viewer.
-    pub(super) n_s: Vec3<T>,
+    pub(super) n_s: Vec3<L>,
     /// Unit direction to the viewer.
-    pub(super) view: Vec3<T>,
+    pub(super) view: Vec3<L>,
     /// How far from the surface secondary rays must start.
-    pub(super) error: T,
+    pub(super) error: L,
     /// The local model, multiplied by the weight of the ray that came here.
-    pub(super) surface: LocalSurface<T>,
+    pub(super) surface: LocalSurface<L>,
 }
 
-/// What a lamp sends to a point, and the segment that must be free for it.
-struct Sent<L: F32Lanes> {
+/// What a lamp sends to points, and the segments that must be free for it.
+pub(super) struct Sent<L: F32Lanes> {
     /// Lanes whose surface faces the lamp, by either normal.
-    faces: L::Mask,
+    pub(super) faces: L::Mask,
     /// Light that the sample gains.
-    light: Vec3<L>,
-    origin: Vec3<L>,
-    direction: Vec3<L>,
-    t_max: L,
+    pub(super) light: Vec3<L>,
+    pub(super) origin: Vec3<L>,
+    pub(super) direction: Vec3<L>,
+    pub(super) t_max: L,
 }
 
 impl<L: F32Lanes> LitPoint<L> {
     /// What `light` sends here.
     #[inline(always)]
-    fn receive(&self, token: L::Token, light: &PreparedLight, origin: ShadowOrigin) -> Sent<L> {
+    pub(super) fn receive(&self, token: L::Token, light: &PreparedLight, origin: ShadowOrigin) -> Sent<L> {
         let splat = |value| L::splat(token, value);
         let arriving = light.at_lanes(token, self.position);
         let faces = |normal: Vec3<L>| normal.dot(arriving.direction).gt(splat(0.0));
@@ -70,123 +69,51 @@ impl<L: F32Lanes> LitPoint<L> {
     }
 }
 
-impl LitPoint<f32> {
-    /// The shadow ray to a light and the light that arrives if nothing is in between; `None` if the surface is turned
-    /// away from it.
-    pub(super) fn toward(&self, light: &PreparedLight, origin: ShadowOrigin) -> Option<(Ray, Vec3f)> {
-        let sent = self.map(one).receive(Scalar, light, origin);
-        let ray = Ray {
-            origin: values(sent.origin),
-            direction: values(sent.direction),
-            t_min: 0.0,
-            t_max: value(sent.t_max),
-        };
-        sent.faces.any().then(|| (ray, values(sent.light)))
-    }
-}
-
-impl<T: Copy> LitPoint<T> {
-    /// `f` of every number.
-    fn map<U>(self, mut f: impl FnMut(T) -> U) -> LitPoint<U> {
-        LitPoint {
-            position: self.position.map(&mut f),
-            n_g: self.n_g.map(&mut f),
-            n_s: self.n_s.map(&mut f),
-            view: self.view.map(&mut f),
-            error: f(self.error),
-            surface: self.surface.map(&mut f),
-        }
-    }
-}
-
-/// Points that are lit together: the lanes of a kernel.
-const BLOCK: usize = 16;
-
-/// Points in the order of a structure of arrays, sixteen by sixteen.
+/// Points that wait for light.
 #[derive(Debug, Default)]
 pub(super) struct LitPoints {
-    blocks: Vec<Block>,
-    len: usize,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Block {
-    points: LitPoint<[f32; BLOCK]>,
-    samples: [u32; BLOCK],
+    /// The fields of [`LitPoint`] in order; sample.
+    rows: Rows<21, 1>,
 }
 
 impl LitPoints {
     pub(super) fn clear(&mut self) {
-        self.blocks.clear();
-        self.len = 0;
+        self.rows.clear();
     }
 
-    /// Append a point of a sample.
-    pub(super) fn push(&mut self, sample: u32, point: &LitPoint<f32>) {
-        let lane = self.len % BLOCK;
-        if lane == 0 {
-            // Lanes that stay unused have no normal, and so face no light.
-            self.blocks.push(Block { points: LitPoint::NOWHERE, samples: [0; BLOCK] });
-        }
-        if let Some(block) = self.blocks.last_mut() {
-            block.points.set(lane, point);
-            block.samples[lane] = sample;
-        }
-        self.len += 1;
+    /// Append the points of the lanes `mask`.
+    #[inline(always)]
+    pub(super) fn append<L: F32Lanes>(&mut self, mask: L::Mask, sample: L::U32, point: &LitPoint<L>) {
+        let LitPoint { position: p, n_g: g, n_s: n, view: v, error, surface } = point;
+        let LocalSurface { diffuse: d, specular: s, exponent, is_blinn } = surface;
+        let floats = [
+            p.x, p.y, p.z, g.x, g.y, g.z, n.x, n.y, n.z, v.x, v.y, v.z, *error, d.x, d.y, d.z, s.x, s.y, s.z,
+            *exponent, *is_blinn,
+        ];
+        self.rows.append::<L>(mask, floats, [sample]);
+    }
+
+    #[inline(always)]
+    fn load<L: F32Lanes>(&self, token: L::Token, at: usize) -> (LitPoint<L>, L::U32) {
+        let (floats, [sample]) = self.rows.load::<L>(token, at);
+        let [px, py, pz, gx, gy, gz, nx, ny, nz, vx, vy, vz, error, dx, dy, dz, sx, sy, sz, exponent, is_blinn] =
+            floats;
+        let surface =
+            LocalSurface { diffuse: Vec3::new(dx, dy, dz), specular: Vec3::new(sx, sy, sz), exponent, is_blinn };
+        let (position, n_g) = (Vec3::new(px, py, pz), Vec3::new(gx, gy, gz));
+        let (n_s, view) = (Vec3::new(nx, ny, nz), Vec3::new(vx, vy, vz));
+        (LitPoint { position, n_g, n_s, view, error, surface }, sample)
     }
 
     /// Queue the shadow rays of all points that face `light`.
     pub(super) fn light(&self, level: Level, light: &PreparedLight, origin: ShadowOrigin, shadows: &mut ShadowBatch) {
-        simd::dispatch(level, LightAll { blocks: &self.blocks, light, origin, shadows });
-    }
-}
-
-impl LitPoint<[f32; BLOCK]> {
-    const NOWHERE: Self = {
-        const ROW: [f32; BLOCK] = [0.0; BLOCK];
-        const ROWS: Vec3<[f32; BLOCK]> = Vec3::new(ROW, ROW, ROW);
-        let surface = LocalSurface { diffuse: ROWS, specular: ROWS, exponent: ROW, is_blinn: ROW };
-        Self { position: ROWS, n_g: ROWS, n_s: ROWS, view: ROWS, error: ROW, surface }
-    };
-
-    fn set(&mut self, lane: usize, point: &LitPoint<f32>) {
-        let set3 = |rows: &mut Vec3<[f32; BLOCK]>, value: Vec3f| {
-            (rows.x[lane], rows.y[lane], rows.z[lane]) = (value.x, value.y, value.z);
-        };
-        set3(&mut self.position, point.position);
-        set3(&mut self.n_g, point.n_g);
-        set3(&mut self.n_s, point.n_s);
-        set3(&mut self.view, point.view);
-        set3(&mut self.surface.diffuse, point.surface.diffuse);
-        set3(&mut self.surface.specular, point.surface.specular);
-        self.error[lane] = point.error;
-        self.surface.exponent[lane] = point.surface.exponent;
-        self.surface.is_blinn[lane] = point.surface.is_blinn;
-    }
-
-    #[inline(always)]
-    fn load<S: Simd>(&self, token: S) -> LitPoint<S::F32x16> {
-        let row = |row: &[f32; BLOCK]| S::F32x16::load(token, row);
-        let rows = |rows: &Vec3<[f32; BLOCK]>| Vec3::new(row(&rows.x), row(&rows.y), row(&rows.z));
-        LitPoint {
-            position: rows(&self.position),
-            n_g: rows(&self.n_g),
-            n_s: rows(&self.n_s),
-            view: rows(&self.view),
-            error: row(&self.error),
-            surface: LocalSurface {
-                diffuse: rows(&self.surface.diffuse),
-                specular: rows(&self.surface.specular),
-                exponent: row(&self.surface.exponent),
-                is_blinn: row(&self.surface.is_blinn),
-            },
-        }
+        simd::dispatch(level, LightAll { points: self, light, origin, shadows });
     }
 }
 
 /// The kernel of [`LitPoints::light`].
 struct LightAll<'a> {
-    blocks: &'a [Block],
+    points: &'a LitPoints,
     light: &'a PreparedLight,
     origin: ShadowOrigin,
     shadows: &'a mut ShadowBatch,
@@ -197,31 +124,14 @@ impl Kernel for LightAll<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, token: S) {
-        for block in self.blocks {
-            let sent = block.points.load(token).receive(token, self.light, self.origin);
-            let mut faces = sent.faces.bits();
-            if faces == 0 {
-                continue;
-            }
-            let (light, origin, direction) = (stored(sent.light), stored(sent.origin), stored(sent.direction));
-            let mut t_max = [0.0; BLOCK];
-            sent.t_max.store(&mut t_max);
-            while faces != 0 {
-                let lane = faces.trailing_zeros() as usize;
-                let at = |rows: &Vec3<[f32; BLOCK]>| Vec3f::new(rows.x[lane], rows.y[lane], rows.z[lane]);
-                let ray = Ray { origin: at(&origin), direction: at(&direction), t_min: 0.0, t_max: t_max[lane] };
-                self.shadows.push(&ray, block.samples[lane], at(&light));
-                faces &= faces - 1;
+        let len = self.points.rows.len();
+        for at in (0..len).step_by(BLOCK) {
+            let (point, sample) = self.points.load::<S::F32x16>(token, at);
+            let sent = point.receive(token, self.light, self.origin);
+            let faces = sent.faces & first_lanes::<S::F32x16>(token, len - at);
+            if faces.any() {
+                self.shadows.append(faces, sample, &sent);
             }
         }
     }
-}
-
-#[inline(always)]
-fn stored<L: F32Lanes<Array = [f32; BLOCK]>>(lanes: Vec3<L>) -> Vec3<[f32; BLOCK]> {
-    lanes.map(|row| {
-        let mut array = [0.0; BLOCK];
-        row.store(&mut array);
-        array
-    })
 }

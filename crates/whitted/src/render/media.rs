@@ -1,107 +1,166 @@
 //! What a ray is inside of.
 
-/// Materials that a ray has entered and not yet left, innermost last: a small stack, so that glass in water in glass
-/// bends light as it should.
+use crate::ray::NONE;
+use simd::U32Lanes;
+
+/// Materials that a ray has entered and not yet left, innermost first: a small stack, so that glass in water in glass
+/// bends light as it should. One for each lane.
 ///
 /// A medium is a material number: bodies of one material that touch or overlap are one body. Entering pushes, leaving
 /// removes the innermost entry of that material, wherever it lies, so that overlapping bodies (where one is left before
 /// the other that was entered later) do not confuse the rest.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Media {
-    materials: [u32; Media::CAPACITY],
-    len: u8,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Media<U> {
+    /// [`NONE`] where there are no more.
+    stack: [U; CAPACITY],
     /// Entries that did not fit.
-    lost: u8,
+    lost: U,
 }
 
-impl Media {
-    /// Nested bodies that are kept; deeper ones are counted and bend nothing.
-    pub(super) const CAPACITY: usize = 7;
+/// Nested bodies that are kept; deeper ones are counted and bend nothing.
+const CAPACITY: usize = 7;
 
-    /// The innermost material, if any.
-    pub(super) fn innermost(&self) -> Option<u32> {
-        self.entries().last().copied()
+/// Rows that media fill.
+pub(super) const ROWS: usize = CAPACITY + 1;
+
+impl<U: U32Lanes> Media<U> {
+    /// Inside nothing.
+    #[inline(always)]
+    pub(super) fn none(token: U::Token) -> Self {
+        Self { stack: [U::splat(token, NONE); CAPACITY], lost: U::splat(token, 0) }
     }
 
-    /// True if the ray is known to be inside `material`.
-    pub(super) fn contains(&self, material: u32) -> bool {
-        self.entries().contains(&material)
+    /// As [`rows`](Self::rows) gave them.
+    #[inline(always)]
+    pub(super) fn from_rows(rows: [U; ROWS]) -> Self {
+        let [stack @ .., lost] = rows;
+        Self { stack, lost }
     }
 
-    /// True if some entry did not fit.
-    pub(super) fn overflowed(&self) -> bool {
-        self.lost > 0
+    /// For storage.
+    #[inline(always)]
+    pub(super) fn rows(self) -> [U; ROWS] {
+        let [a, b, c, d, e, f, g] = self.stack;
+        [a, b, c, d, e, f, g, self.lost]
+    }
+
+    /// The innermost material, or [`NONE`].
+    #[inline(always)]
+    pub(super) fn innermost(&self) -> U {
+        self.stack[0]
+    }
+
+    /// Lanes known to be inside `material`.
+    #[inline(always)]
+    pub(super) fn contains(&self, material: U) -> U::Mask {
+        let mut found = self.stack[0].eq(material);
+        for i in 1..CAPACITY {
+            found = found | self.stack[i].eq(material);
+        }
+        found
+    }
+
+    /// Lanes where some entry did not fit.
+    #[inline(always)]
+    pub(super) fn overflowed(&self, token: U::Token) -> U::Mask {
+        U::splat(token, 0).lt(self.lost)
     }
 
     /// The media after entering `material`. Beyond the capacity only the number of entries is kept.
-    pub(super) fn entered(mut self, material: u32) -> Self {
-        match self.materials.get_mut(usize::from(self.len)) {
-            Some(slot) => {
-                *slot = material;
-                self.len += 1;
-            }
-            None => self.lost = self.lost.saturating_add(1),
+    #[inline(always)]
+    pub(super) fn entered(&self, token: U::Token, material: U) -> Self {
+        let has_room = self.stack[CAPACITY - 1].eq(U::splat(token, NONE));
+        let mut stack = self.stack;
+        stack[0] = U::select(has_room, material, self.stack[0]);
+        for i in 1..CAPACITY {
+            stack[i] = U::select(has_room, self.stack[i - 1], self.stack[i]);
         }
-        self
+        let lost = U::select(has_room, self.lost, self.lost + U::splat(token, 1));
+        Self { stack, lost }
     }
 
     /// The media after leaving `material`; nothing changes if it was never entered.
-    pub(super) fn left(mut self, material: u32) -> Self {
-        let len = usize::from(self.len);
-        match self.entries().iter().rposition(|&entry| entry == material) {
-            Some(at) => {
-                self.materials.copy_within(at + 1..len, at);
-                self.len -= 1;
-                self.materials[len - 1] = 0;
-            }
-            None => self.lost = self.lost.saturating_sub(1),
+    #[inline(always)]
+    pub(super) fn left(&self, token: U::Token, material: U) -> Self {
+        let mut stack = self.stack;
+        let mut found = self.stack[0].eq(material);
+        for i in 0..CAPACITY - 1 {
+            stack[i] = U::select(found, self.stack[i + 1], self.stack[i]);
+            found = found | self.stack[i + 1].eq(material);
         }
-        self
+        let last = CAPACITY - 1;
+        stack[last] = U::select(found, U::splat(token, NONE), self.stack[last]);
+        let kept = found | self.lost.eq(U::splat(token, 0));
+        Self { stack, lost: U::select(kept, self.lost, self.lost - U::splat(token, 1)) }
     }
 
-    fn entries(&self) -> &[u32] {
-        &self.materials[..usize::from(self.len)]
+    /// `set` in the lanes `mask`, else `unset`.
+    #[inline(always)]
+    pub(super) fn select(mask: U::Mask, set: &Self, unset: &Self) -> Self {
+        let mut stack = unset.stack;
+        for i in 0..CAPACITY {
+            stack[i] = U::select(mask, set.stack[i], unset.stack[i]);
+        }
+        Self { stack, lost: U::select(mask, set.lost, unset.lost) }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Media;
+    use super::*;
+    use simd::{MaskLanes, Scalar, ScalarU32};
+
+    /// The media of one ray, changed as a path of (material, entered) says.
+    fn after(path: &[(u32, bool)]) -> Media<ScalarU32<1>> {
+        path.iter().fold(Media::none(Scalar), |media, &(material, enters)| {
+            let material = ScalarU32::splat(Scalar, material);
+            if enters { media.entered(Scalar, material) } else { media.left(Scalar, material) }
+        })
+    }
+
+    fn numbers(media: &Media<ScalarU32<1>>) -> [u32; ROWS] {
+        media.rows().map(|row| {
+            let mut number = [0];
+            row.store(&mut number);
+            number[0]
+        })
+    }
+
+    fn innermost(path: &[(u32, bool)]) -> u32 {
+        numbers(&after(path))[0]
+    }
+
+    const NOTHING: [u32; ROWS] = [NONE, NONE, NONE, NONE, NONE, NONE, NONE, 0];
 
     #[test]
     fn bodies_are_left_in_any_order() {
-        let both = Media::default().entered(3).entered(5);
-        assert_eq!(both.innermost(), Some(5));
-        assert_eq!(both.left(3).innermost(), Some(5));
-        assert_eq!(both.left(5).innermost(), Some(3));
-        assert_eq!(both.left(3).left(5), Media::default());
+        let (three, five) = ((3, true), (5, true));
+        assert_eq!(innermost(&[three, five]), 5);
+        assert_eq!(innermost(&[three, five, (3, false)]), 5);
+        assert_eq!(innermost(&[three, five, (5, false)]), 3);
+        assert_eq!(numbers(&after(&[three, five, (3, false), (5, false)])), NOTHING);
     }
 
     #[test]
     fn one_material_twice_is_left_twice() {
-        let twice = Media::default().entered(3).entered(3);
-        assert!(twice.left(3).contains(3));
-        assert_eq!(twice.left(3).left(3).innermost(), None);
+        let once = after(&[(3, true), (3, true), (3, false)]);
+        assert!(once.contains(ScalarU32::splat(Scalar, 3)).any());
+        assert_eq!(innermost(&[(3, true), (3, true), (3, false), (3, false)]), NONE);
     }
 
     #[test]
     fn leaving_what_was_never_entered_changes_nothing() {
-        assert_eq!(Media::default().left(9), Media::default());
-        let inside = Media::default().entered(3);
-        assert_eq!(inside.left(9), inside);
+        assert_eq!(numbers(&after(&[(9, false)])), NOTHING);
+        assert_eq!(numbers(&after(&[(3, true), (9, false)])), numbers(&after(&[(3, true)])));
     }
 
     #[test]
     fn overflow_is_counted_and_undone() {
-        let mut media = Media::default();
-        for material in 0..10 {
-            media = media.entered(material);
-        }
-        assert!(media.overflowed());
-        assert_eq!(media.innermost(), Some(Media::CAPACITY as u32 - 1));
-        for material in (0..10).rev() {
-            media = media.left(material);
-        }
-        assert_eq!(media, Media::default());
+        let entries: Vec<(u32, bool)> = (0..10).map(|material| (material, true)).collect();
+        assert!(after(&entries).overflowed(Scalar).any());
+        assert_eq!(innermost(&entries), CAPACITY as u32 - 1);
+        let exits = (0..10).rev().map(|material| (material, false));
+        let path: Vec<(u32, bool)> = entries.iter().copied().chain(exits).collect();
+        assert_eq!(numbers(&after(&path)), NOTHING);
     }
 }

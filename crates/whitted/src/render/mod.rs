@@ -20,6 +20,7 @@ mod progress;
 mod queue;
 mod recursive;
 mod region;
+mod rows;
 mod samples;
 mod scatter;
 mod shadow;

@@ -1,103 +1,119 @@
 //! The paper's renderer: one ray after the other, depth first. The oracle of the wavefront.
 //!
-//! It calls the same functions for surfaces and lights, and none of the queueing: every ray is a batch of one. The
-//! recursion is a loop over an explicit stack, so that no depth can exhaust that of the machine.
+//! It calls the same functions for surfaces and lights with a single lane, and none of the queueing: every ray is a
+//! batch of one. The recursion is a loop over an explicit stack, so that no depth can exhaust that of the machine.
 
 use super::context::Context;
+use super::lighting::Sent;
 use super::progress::Cancelled;
-use super::queue::Tag;
+use super::queue::TaggedRays;
 use super::samples::Samples;
 use super::shadow::{BEFORE_ALL, MAX_FILTERS, opaque_primitives};
 use super::vertex::Vertex;
+use super::wavefront::camera_tag;
+use super::workspace::Places;
+use crate::geometry::surfaces::Surfaces;
 use crate::math::Vec3f;
-use crate::ray::{Hit, HitBatch, Ray, RayBatch};
+use crate::ray::{Hit, HitBatch, Ray};
+use crate::shading::one::{One, one, ones, value, values};
 use crate::tree::{Occlusion, Scratch};
+use simd::{MaskLanes, Scalar, ScalarU32, U32Lanes};
+
+/// A ray that waits, and its generation.
+type Waiting = (TaggedRays<One>, u32);
 
 /// The memory of one thread.
 #[derive(Debug, Default)]
 pub(super) struct Recursive {
-    stack: Vec<(Ray, Tag, u32)>,
-    ray: RayBatch,
+    stack: Vec<Waiting>,
     hit: HitBatch,
     occlusion: Vec<Occlusion>,
     scratch: Scratch,
 }
 
 impl Recursive {
-    /// Trace a camera ray and all that descends from it.
+    /// Trace the camera rays through `places`, each with all that descends from it.
     ///
     /// # Errors
     /// If the render was cancelled.
-    pub(super) fn run(
-        &mut self,
-        context: &Context,
-        ray: &Ray,
-        tag: Tag,
-        samples: &mut Samples,
-    ) -> Result<(), Cancelled> {
-        self.stack.clear();
-        self.stack.push((*ray, tag, 0));
-        while let Some((ray, tag, generation)) = self.stack.pop() {
-            if context.cancel.is_cancelled() {
-                return Err(Cancelled);
+    pub(super) fn run(&mut self, context: &Context, places: &Places, samples: &mut Samples) -> Result<(), Cancelled> {
+        for index in 0..places.len() {
+            let ([x, y], sample) = places.load::<One>(Scalar, index);
+            let Ray { origin, direction, .. } = context.camera.ray(value(x), value(y));
+            let tag = camera_tag(Scalar, sample);
+            self.stack.clear();
+            self.stack.push((TaggedRays { origin: ones(origin), direction: ones(direction), tag }, 0));
+            while let Some((ray, generation)) = self.stack.pop() {
+                if context.cancel.is_cancelled() {
+                    return Err(Cancelled);
+                }
+                self.visit(context, &ray, generation, samples);
             }
-            self.visit(context, &ray, &tag, generation, samples);
         }
         Ok(())
     }
 
-    fn visit(&mut self, context: &Context, ray: &Ray, tag: &Tag, generation: u32, samples: &mut Samples) {
-        let hit = self.closest_hit(context, ray, samples);
+    fn visit(&mut self, context: &Context, rays: &TaggedRays<One>, generation: u32, samples: &mut Samples) {
+        let (all, sample) = (MaskLanes::from_bits(Scalar, 1), rays.tag.sample);
+        let ray = Ray::new(values(rays.origin), values(rays.direction));
+        let hit = self.closest_hit(context, &ray, samples);
         if !hit.is_hit() {
-            samples.add(tag.sample, context.look.background(ray.direction).times(tag.weight));
+            let light = context.look.background(Scalar, rays.direction);
+            samples.add_lanes(all, sample, light.times(rays.tag.weight));
             return;
         }
-        let vertex = Vertex::new(context, ray, &hit, tag);
+        let point = context.geometry.primitives().surface_point(&ray, &hit);
+        let (position, n_g, n_s) = (ones(point.position), ones(point.n_g), ones(point.n_s));
+        let surface = Surfaces { position, n_g, n_s, error: one(point.error) };
+        let hit = (one(hit.t), ScalarU32::splat(Scalar, hit.primitive));
+        let vertex = Vertex::new(Scalar, context, all, rays, hit, &surface);
         if generation == 0 {
-            vertex.note_first(context, samples);
+            vertex.note_first(Scalar, context, samples);
         }
-        samples.add(tag.sample, vertex.ambient(context));
-        if let Some(point) = vertex.lit(context) {
+        samples.add_lanes(all, sample, vertex.ambient(Scalar, context));
+        if vertex.answers_to_lights(Scalar).any() {
             for (light, origin) in context.look.lights() {
-                if let Some((ray, light)) = point.toward(light, *origin) {
-                    let light = self.arriving(context, &ray, light, samples);
-                    samples.add(tag.sample, light);
+                let sent = vertex.lit().receive(Scalar, light, *origin);
+                if sent.faces.any() {
+                    let light = self.arriving(context, &sent, samples);
+                    samples.add_lanes(all, sample, ones(light));
                 }
             }
         }
-        let scattered = vertex.scatter(context, generation, samples);
-        // Pushed last, popped first: the mirrored ray before the refracted one.
-        for (ray, tag) in scattered.refracted.into_iter().chain(scattered.reflected) {
-            self.stack.push((ray, tag, generation + 1));
+        if let Some(scattered) = vertex.scatter(Scalar, context, generation, samples) {
+            // Pushed last, popped first: the mirrored ray before the refracted one.
+            for child in [scattered.refracted, scattered.reflected] {
+                if child.exists.any() {
+                    self.stack.push((child.rays, generation + 1));
+                }
+            }
         }
     }
 
     fn closest_hit(&mut self, context: &Context, ray: &Ray, samples: &mut Samples) -> Hit {
-        self.ray.clear();
-        self.ray.push(ray);
-        samples.statistics += context.query.closest_hit(&self.ray, &mut self.hit, &mut self.scratch);
+        samples.statistics += context.query.closest_hit(ray, &mut self.hit, &mut self.scratch);
         self.hit.get(0)
     }
 
-    /// What reaches a surface of `light` that comes along a shadow ray.
-    fn arriving(&mut self, context: &Context, ray: &Ray, light: Vec3f, samples: &mut Samples) -> Vec3f {
-        self.ray.clear();
-        self.ray.push(ray);
+    /// What reaches a surface of the light that a lamp sends.
+    fn arriving(&mut self, context: &Context, sent: &Sent<One>, samples: &mut Samples) -> Vec3f {
+        let (origin, direction) = (values(sent.origin), values(sent.direction));
+        let ray = Ray { origin, direction, t_min: 0.0, t_max: value(sent.t_max) };
         samples.statistics.shadow_rays += 1;
         let (opaque, out) = (opaque_primitives(context), &mut self.occlusion);
-        samples.statistics += context.query.occluded(&self.ray, opaque, out, &mut self.scratch);
+        samples.statistics += context.query.occluded(&ray, opaque, out, &mut self.scratch);
         match self.occlusion[0] {
-            Occlusion::Clear => light,
-            Occlusion::Filtered => self.filtered(context, light, samples),
+            Occlusion::Clear => values(sent.light),
+            Occlusion::Filtered => self.filtered(context, &ray, values(sent.light), samples),
             Occlusion::Blocked => Vec3f::ZERO,
         }
     }
 
-    /// `light` after all surfaces on the way of the ray that [`arriving`](Self::arriving) left in place.
-    fn filtered(&mut self, context: &Context, mut light: Vec3f, samples: &mut Samples) -> Vec3f {
+    /// `light` after all surfaces on the way of a ray.
+    fn filtered(&mut self, context: &Context, ray: &Ray, mut light: Vec3f, samples: &mut Samples) -> Vec3f {
         let mut after = [BEFORE_ALL];
         for _ in 0..MAX_FILTERS {
-            samples.statistics += context.query.next_hit(&self.ray, &mut after, &mut self.hit, &mut self.scratch);
+            samples.statistics += context.query.next_hit(ray, &mut after, &mut self.hit, &mut self.scratch);
             let hit = self.hit.get(0);
             if !hit.is_hit() {
                 return light;

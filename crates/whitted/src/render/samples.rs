@@ -1,9 +1,12 @@
 //! What a batch of samples has gathered.
 
+use super::context::Context;
 use super::film::Film;
 use super::first_pass::FirstSample;
+use super::rows::{array, array_f32, lanes_of};
 use super::statistics::Statistics;
-use crate::math::Vec3f;
+use crate::math::{Vec3, Vec3f};
+use simd::{F32Lanes, MaskLanes};
 
 /// The results of a batch of samples, filled in any order by whoever traces them.
 #[derive(Debug, Default)]
@@ -28,15 +31,47 @@ impl Samples {
         self.film.add(sample, light);
     }
 
-    /// Note what the camera ray of a sample hit.
-    pub(super) fn see(&mut self, sample: u32, object: u32, normal: Vec3f, depth: f32) {
-        let first = &mut self.first[sample as usize];
-        (first.object, first.normal, first.depth) = (object, normal, depth);
+    /// Add light to the samples of the lanes `mask`.
+    #[inline(always)]
+    pub(super) fn add_lanes<L: F32Lanes>(&mut self, mask: L::Mask, sample: L::U32, light: Vec3<L>) {
+        let samples = array::<L>(sample);
+        let rows = [array_f32(light.x), array_f32(light.y), array_f32(light.z)];
+        let [r, g, b] = [rows[0].as_ref(), rows[1].as_ref(), rows[2].as_ref()];
+        for lane in lanes_of(mask.bits()) {
+            self.film.add(samples.as_ref()[lane], Vec3::new(r[lane], g[lane], b[lane]));
+        }
     }
 
-    /// Note that a secondary ray of a sample was not traced because of its weight.
-    pub(super) fn cut(&mut self, sample: u32) {
-        self.first[sample as usize].cut = true;
+    /// Note what the camera rays of the samples of the lanes `mask` hit.
+    #[inline(always)]
+    pub(super) fn see<L: F32Lanes>(
+        &mut self,
+        context: &Context,
+        mask: L::Mask,
+        sample: L::U32,
+        primitive: L::U32,
+        normal: Vec3<L>,
+        depth: L,
+    ) {
+        let (samples, primitives, depths) = (array::<L>(sample), array::<L>(primitive), array_f32(depth));
+        let rows = [array_f32(normal.x), array_f32(normal.y), array_f32(normal.z)];
+        let [x, y, z] = [rows[0].as_ref(), rows[1].as_ref(), rows[2].as_ref()];
+        for lane in lanes_of(mask.bits()) {
+            let first = &mut self.first[samples.as_ref()[lane] as usize];
+            first.object = context.geometry.object(primitives.as_ref()[lane]);
+            first.normal = Vec3::new(x[lane], y[lane], z[lane]);
+            first.depth = depths.as_ref()[lane];
+        }
+    }
+
+    /// Note that secondary rays of the samples of the lanes `mask` were not traced because of their weight.
+    #[inline(always)]
+    pub(super) fn cut<L: F32Lanes>(&mut self, mask: L::Mask, sample: L::U32) {
+        let samples = array::<L>(sample);
+        for lane in lanes_of(mask.bits()) {
+            self.first[samples.as_ref()[lane] as usize].cut = true;
+        }
+        self.statistics.cut_by_weight += u64::from(mask.bits().count_ones());
     }
 
     /// The colour of every sample, in order.

@@ -1,13 +1,15 @@
-//! The rays that leave a vertex: mirrored and refracted, their weights and their media.
+//! The rays that leave vertices, in lanes: mirrored and refracted, their weights and their media.
 
 use super::context::Context;
 use super::media::Media;
-use super::queue::Tag;
+use super::queue::{Tag, TaggedRays};
+use super::rows::{array, array_f32, lanes_of};
 use super::samples::Samples;
 use super::vertex::Vertex;
-use crate::math::Vec3f;
-use crate::ray::Ray;
-use crate::shading::{PreparedMaterial, mirrored, refracted};
+use crate::math::{Vec3, select};
+use crate::ray::NONE;
+use crate::shading::{Scattering, lanes};
+use simd::{F32Lanes, MaskLanes, U32Lanes};
 
 /// Rays that may descend from one camera ray, itself included.
 ///
@@ -16,120 +18,207 @@ use crate::shading::{PreparedMaterial, mirrored, refracted};
 /// glass keep most of it.
 pub(super) const RAYS_PER_SAMPLE: u32 = 1 << 16;
 
-/// A ray that leaves a vertex, with what it carries.
-pub(super) type Child = (Ray, Tag);
-
-/// The rays that leave a vertex.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Scattered {
-    pub(super) reflected: Option<Child>,
-    pub(super) refracted: Option<Child>,
+/// Rays that leave vertices, in the lanes where there are any.
+pub(super) struct Child<L: F32Lanes> {
+    pub(super) exists: L::Mask,
+    pub(super) rays: TaggedRays<L>,
 }
 
-/// What is on the two sides of a surface.
-struct Interface {
+/// The rays that leave vertices.
+pub(super) struct Scattered<L: F32Lanes> {
+    pub(super) reflected: Child<L>,
+    pub(super) refracted: Child<L>,
+}
+
+/// What is on the two sides of surfaces.
+struct Interface<L: F32Lanes> {
     /// Index of refraction on the side of the viewer, divided by that of the other side.
-    eta: f32,
+    eta: L,
     /// What a ray is inside of after crossing.
-    beyond: Media,
+    beyond: Media<L::U32>,
 }
 
-impl Vertex {
-    /// The rays that leave the surface here and are worth tracing; `generation` is that of the arriving ray. Counts
-    /// what is traced and what is not.
-    pub(super) fn scatter(&self, context: &Context, generation: u32, samples: &mut Samples) -> Scattered {
-        let material = context.look.material(self.material);
-        if !material.scatters() {
-            return Scattered::default();
+impl<L: F32Lanes> Vertex<L> {
+    /// The rays that leave the surfaces here and are worth tracing; `generation` is that of the arriving rays. Counts
+    /// what is traced and what is not. `None` if nothing leaves.
+    #[inline(always)]
+    pub(super) fn scatter(
+        &self,
+        token: L::Token,
+        context: &Context,
+        generation: u32,
+        samples: &mut Samples,
+    ) -> Option<Scattered<L>> {
+        let scatters = self.active & self.finish.scatters(token);
+        if !scatters.any() {
+            return None;
         }
-        let all = self.scatter_all(context, material);
+        let mut children = self.scatter_all(token, context, scatters);
+        let Scattered { reflected, refracted } = &mut children;
         let counts = &mut samples.statistics;
         if generation >= context.settings.depth {
-            counts.cut_by_depth += u64::from(all.reflected.is_some()) + u64::from(all.refracted.is_some());
-            return Scattered::default();
+            counts.cut_by_depth += count(reflected.exists) + count(refracted.exists);
+            return None;
         }
-        counts.media_overflows += u64::from(all.refracted.is_some_and(|(_, tag)| tag.media.overflowed()));
-        let min_weight = context.settings.min_weight;
-        let mut heavy = |child: Option<Child>| {
-            let kept = child.filter(|(_, tag)| tag.weight.max_component() >= min_weight);
-            if child.is_some() && kept.is_none() {
-                samples.statistics.cut_by_weight += 1;
-                samples.cut(self.tag.sample);
+        counts.media_overflows += count(refracted.exists & refracted.rays.tag.media.overflowed(token));
+        for child in [&mut *reflected, &mut *refracted] {
+            let heavy = child.rays.tag.weight.largest().ge(L::splat(token, context.settings.min_weight));
+            let cut = child.exists & !heavy;
+            if cut.any() {
+                samples.cut::<L>(cut, self.tag.sample);
             }
-            kept
-        };
-        let kept = Scattered { reflected: heavy(all.reflected), refracted: heavy(all.refracted) };
-        let kept = self.share_budget(kept, context.settings.depth - generation, samples);
-        samples.statistics.reflected_rays += u64::from(kept.reflected.is_some());
-        samples.statistics.refracted_rays += u64::from(kept.refracted.is_some());
-        kept
+            child.exists = child.exists & heavy;
+        }
+        self.share_budget(token, &mut children, context.settings.depth - generation, samples);
+        samples.statistics.reflected_rays += count(children.reflected.exists);
+        samples.statistics.refracted_rays += count(children.refracted.exists);
+        Some(children)
     }
 
-    /// Both rays, whatever their weight.
-    fn scatter_all(&self, context: &Context, material: &PreparedMaterial) -> Scattered {
-        let interface = self.interface(context, material);
-        let through = if material.is_transparent() { self.refracted(interface.eta) } else { None };
-        let (reflect, transmit) = material.split(self.n_s.dot(self.view), interface.eta, through.is_none());
-        let child = |share: Vec3f, direction: Vec3f, side: f32, media: Media| {
-            let tag = Tag { weight: self.tag.weight.times(share), media, ..self.tag };
-            (share.max_component() > 0.0).then(|| (Ray::new(self.off_surface(self.error * side), direction), tag))
-        };
+    /// Both rays in the lanes `scatters`, whatever their weight.
+    #[inline(always)]
+    fn scatter_all(&self, token: L::Token, context: &Context, scatters: L::Mask) -> Scattered<L> {
+        let material = context.look.table().scattering::<L>(token, scatters, self.material);
+        let transparent = scatters & self.finish.is_transparent(token);
+        let interface = self.interface(token, context, transparent, &material);
+        let (through, refracts) = self.refracted(token, transparent, interface.eta);
+        let total = transparent & !refracts;
+        let (reflect, transmit) = material.split(token, self.n_s.dot(self.view), interface.eta, total);
+        let up = self.off_surface(self.error);
+        let down = self.off_surface(self.error * L::splat(token, -1.0));
         Scattered {
-            reflected: child(reflect, self.mirrored(), 1.0, self.tag.media),
-            refracted: through.and_then(|direction| child(transmit, direction, -1.0, interface.beyond)),
+            reflected: self.child(token, scatters, reflect, up, self.mirrored(token), self.tag.media),
+            refracted: self.child(token, refracts, transmit, down, through, interface.beyond),
         }
     }
 
-    /// What the surface separates. Opaque bodies are never entered: their index serves Fresnel's equations only.
-    fn interface(&self, context: &Context, material: &PreparedMaterial) -> Interface {
-        let index = |media: &Media| media.innermost().map_or(1.0, |medium| context.look.material(medium).ior());
+    /// The rays from `origin` along `direction` that carry a share of the light, where that is not zero.
+    #[inline(always)]
+    fn child(
+        &self,
+        token: L::Token,
+        exists: L::Mask,
+        share: Vec3<L>,
+        origin: Vec3<L>,
+        direction: Vec3<L>,
+        media: Media<L::U32>,
+    ) -> Child<L> {
+        let tag = Tag { weight: self.tag.weight.times(share), media, ..self.tag };
+        let exists = exists & share.largest().gt(L::splat(token, 0.0));
+        Child { exists, rays: TaggedRays { origin, direction, tag } }
+    }
+
+    /// What the surfaces separate. Opaque bodies are never entered: their index serves Fresnel's equations only.
+    #[inline(always)]
+    fn interface(
+        &self,
+        token: L::Token,
+        context: &Context,
+        transparent: L::Mask,
+        material: &Scattering<L>,
+    ) -> Interface<L> {
         let here = &self.tag.media;
-        if !material.is_transparent() {
-            return Interface { eta: index(here) / material.ior(), beyond: *here };
+        if !context.look.table().has_transparent() {
+            return Interface { eta: L::splat(token, 1.0) / material.ior, beyond: *here };
         }
-        let beyond = if self.entering { here.entered(self.material) } else { here.left(self.material) };
-        Interface { eta: index(here) / index(&beyond), beyond }
+        let crossed =
+            Media::select(self.entering, &here.entered(token, self.material), &here.left(token, self.material));
+        let beyond = Media::select(transparent, &crossed, here);
+        let index_beyond = L::select(transparent, self.index_in(token, context, &beyond), material.ior);
+        Interface { eta: self.index_in(token, context, here) / index_beyond, beyond }
     }
 
-    /// The mirrored direction. Where the shading normal would send it below the surface, the geometric one is taken.
-    fn mirrored(&self) -> Vec3f {
-        let direction = mirrored(-self.view, self.n_s);
-        if direction.dot(self.n_g) > 0.0 { direction } else { mirrored(-self.view, self.n_g) }
+    /// The index of refraction of the innermost medium; 1 outside of all.
+    #[inline(always)]
+    fn index_in(&self, token: L::Token, context: &Context, media: &Media<L::U32>) -> L {
+        let medium = media.innermost();
+        let inside = self.active & !medium.eq(L::U32::splat(token, NONE));
+        context.look.table().ior(token, inside, medium)
     }
 
-    /// The refracted direction; `None` for total reflection. Where the shading normal would send it above the surface,
-    /// the geometric one is taken.
-    fn refracted(&self, eta: f32) -> Option<Vec3f> {
-        let direction = refracted(-self.view, self.n_s, eta)?;
-        if direction.dot(self.n_g) < 0.0 { Some(direction) } else { refracted(-self.view, self.n_g, eta) }
+    /// The mirrored directions. Where the shading normal would send one below the surface, the geometric one is taken.
+    #[inline(always)]
+    fn mirrored(&self, token: L::Token) -> Vec3<L> {
+        let direction = lanes::mirrored(token, -self.view, self.n_s);
+        let above = direction.dot(self.n_g).gt(L::splat(token, 0.0));
+        select(above, direction, lanes::mirrored(token, -self.view, self.n_g))
     }
 
-    /// Divide the budget of the arriving ray, less that ray, among its children by weight. A child gets at least one
-    /// ray, or is not traced, and none gets more than all its descendants could need.
-    fn share_budget(&self, mut children: Scattered, generations_left: u32, samples: &mut Samples) -> Scattered {
-        let left = self.tag.budget - 1;
-        let Scattered { reflected, refracted } = &mut children;
-        match (reflected.as_mut(), refracted.as_mut()) {
-            (Some((_, a)), Some((_, b))) => {
-                let weights = [a.weight, b.weight].map(Vec3f::max_component);
-                [a.budget, b.budget] = shares(left, weights, generations_left);
-            }
-            (Some((_, only)), None) | (None, Some((_, only))) => only.budget = left,
-            (None, None) => {}
+    /// The refracted directions and the lanes of `transparent` that have one: the others reflect totally. Where the
+    /// shading normal would send one above the surface, the geometric one is taken.
+    #[inline(always)]
+    fn refracted(&self, token: L::Token, transparent: L::Mask, eta: L) -> (Vec3<L>, L::Mask) {
+        if !transparent.any() {
+            return (self.view, transparent);
         }
-        for child in [reflected, refracted] {
-            if child.take_if(|(_, tag)| tag.budget == 0).is_some() {
-                samples.statistics.cut_by_budget += 1;
-            }
+        let (direction, refracts) = lanes::refracted(token, -self.view, self.n_s, eta);
+        let refracts = transparent & refracts;
+        let below = direction.dot(self.n_g).lt(L::splat(token, 0.0));
+        if !(refracts & !below).any() {
+            return (direction, refracts);
         }
-        children
+        let (other, other_refracts) = lanes::refracted(token, -self.view, self.n_g, eta);
+        (select(below, direction, other), refracts & (below | other_refracts))
     }
+
+    /// Divide the budget of the arriving rays, less those rays, among their children by weight. A child gets at least
+    /// one ray, or is not traced, and none gets more than all its descendants could need.
+    #[inline(always)]
+    fn share_budget(&self, token: L::Token, children: &mut Scattered<L>, generations_left: u32, samples: &mut Samples) {
+        let left = self.tag.budget - L::U32::splat(token, 1);
+        let Scattered { reflected: a, refracted: b } = children;
+        let both = a.exists & b.exists;
+        let most = L::U32::splat(token, most_rays(generations_left));
+        let (half, none) = (left.shr::<1>(), L::U32::splat(token, 0));
+        let scarce = both & half.lt(most);
+        let each = L::U32::select(both, most, left);
+        (a.rays.tag.budget, b.rays.tag.budget) = (each, each);
+        if scarce.any() {
+            self.share_scarce(token, scarce, left, children, generations_left);
+        }
+        for child in [&mut children.reflected, &mut children.refracted] {
+            let starved = child.exists & child.rays.tag.budget.eq(none);
+            samples.statistics.cut_by_budget += count(starved);
+            child.exists = child.exists & !starved;
+        }
+    }
+
+    /// Divide budgets that do not suffice, lane by lane: only paths deeper than 15 meet this.
+    #[inline(never)]
+    fn share_scarce(
+        &self,
+        token: L::Token,
+        scarce: L::Mask,
+        left: L::U32,
+        children: &mut Scattered<L>,
+        generations_left: u32,
+    ) {
+        let [a, b] = [&mut children.reflected, &mut children.refracted].map(|child| &mut child.rays.tag);
+        let (left, weights) = (array::<L>(left), [a.weight, b.weight].map(|weight| array_f32(weight.largest())));
+        let mut budgets = [a.budget, b.budget].map(array::<L>);
+        for lane in lanes_of(scarce.bits()) {
+            let weights = [weights[0].as_ref()[lane], weights[1].as_ref()[lane]];
+            let [first, second] = shares(left.as_ref()[lane], weights, generations_left);
+            (budgets[0].as_mut()[lane], budgets[1].as_mut()[lane]) = (first, second);
+        }
+        a.budget = L::U32::load(token, &budgets[0]);
+        b.budget = L::U32::load(token, &budgets[1]);
+    }
+}
+
+#[inline(always)]
+fn count<M: MaskLanes>(mask: M) -> u64 {
+    u64::from(mask.bits().count_ones())
+}
+
+/// All rays of a full binary tree of so many generations.
+fn most_rays(generations: u32) -> u32 {
+    1u32.checked_shl(generations).map_or(u32::MAX, |nodes| nodes - 1)
 }
 
 /// `left` rays divided among two that may have `generations_left` generations, themselves included, by their weights.
 fn shares(left: u32, [a, b]: [f32; 2], generations_left: u32) -> [u32; 2] {
-    // All nodes of a full binary tree.
-    let most = 1u32.checked_shl(generations_left).map_or(u32::MAX, |nodes| nodes - 1);
+    let most = most_rays(generations_left);
     if left / 2 >= most {
         return [most, most];
     }

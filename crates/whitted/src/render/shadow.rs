@@ -1,11 +1,14 @@
 //! Light on its way from a lamp to a surface.
 
 use super::context::Context;
+use super::lighting::Sent;
+use super::rows::Rows;
 use super::samples::Samples;
 use crate::math::Vec3f;
-use crate::ray::{HitBatch, Ray, RayBatch};
+use crate::ray::{HitBatch, Ray, RayBatch, Rays};
 use crate::scene::Shadows;
 use crate::tree::{BitSet, Occlusion, Scratch};
+use simd::F32Lanes;
 
 /// Light passes at most this many surfaces; what would pass more is lost. Bounds the work of a shadow ray.
 pub(super) const MAX_FILTERS: usize = 256;
@@ -24,39 +27,47 @@ pub(super) fn opaque_primitives<'a>(context: &Context<'a>) -> Option<&'a BitSet>
 /// The shadow rays of a batch towards one light.
 #[derive(Debug, Default)]
 pub(super) struct ShadowBatch {
-    rays: RayBatch,
-    gains: Vec<(u32, Vec3f)>,
+    /// Origin, direction, end of the range, light; sample.
+    rows: Rows<10, 1>,
     occlusion: Vec<Occlusion>,
     filtered: FilteredBatch,
 }
 
 impl ShadowBatch {
-    /// Queue a ray between a surface and the lamp; its sample gains `light` if nothing is in between.
+    /// Queue the segments between surfaces and the lamp, in the lanes `mask`; their samples gain light if nothing is in
+    /// between.
     #[inline(always)]
-    pub(super) fn push(&mut self, ray: &Ray, sample: u32, light: Vec3f) {
-        self.rays.push(ray);
-        self.gains.push((sample, light));
+    pub(super) fn append<L: F32Lanes>(&mut self, mask: L::Mask, sample: L::U32, sent: &Sent<L>) {
+        let (o, d, light) = (sent.origin, sent.direction, sent.light);
+        let floats = [o.x, o.y, o.z, d.x, d.y, d.z, sent.t_max, light.x, light.y, light.z];
+        self.rows.append::<L>(mask, floats, [sample]);
     }
 
     /// Trace the rays, add the light that arrives, and forget the rays.
     pub(super) fn resolve(&mut self, context: &Context, scratch: &mut Scratch, samples: &mut Samples) {
-        if self.gains.is_empty() {
+        if self.rows.is_empty() {
             return;
         }
-        samples.statistics.shadow_rays += self.gains.len() as u64;
-        let counts = context.query.occluded(&self.rays, opaque_primitives(context), &mut self.occlusion, scratch);
-        samples.statistics += counts;
-        for (index, &(sample, light)) in self.gains.iter().enumerate() {
-            match self.occlusion[index] {
+        samples.statistics.shadow_rays += self.rows.len() as u64;
+        samples.statistics +=
+            context.query.occluded(rays(&self.rows), opaque_primitives(context), &mut self.occlusion, scratch);
+        let [r, g, b] = [7, 8, 9].map(|row| self.rows.floats(row));
+        for (index, (&occlusion, &sample)) in self.occlusion.iter().zip(self.rows.integers(0)).enumerate() {
+            let light = Vec3f::new(r[index], g[index], b[index]);
+            match occlusion {
                 Occlusion::Clear => samples.add(sample, light),
-                Occlusion::Filtered => self.filtered.push(&self.rays.get(index), sample, light),
+                Occlusion::Filtered => self.filtered.push(&rays(&self.rows).get(index), sample, light),
                 Occlusion::Blocked => {}
             }
         }
         self.filtered.resolve(context, scratch, samples);
-        self.rays.clear();
-        self.gains.clear();
+        self.rows.clear();
     }
+}
+
+fn rays(rows: &Rows<10, 1>) -> Rays<'_> {
+    let row = |row| rows.floats(row);
+    Rays::new([row(0), row(1), row(2)], [row(3), row(4), row(5)]).with_t_max(row(6))
 }
 
 /// Shadow rays that meet only transparent surfaces: each round finds the next surface of every ray that is left.

@@ -4,19 +4,16 @@ use super::context::Context;
 use super::execution::Method;
 use super::first_pass::{FirstPass, PassRows};
 use super::jitter::{MIDDLE, PixelHash, Stratification};
-use super::media::Media;
 use super::probe::{Phase, Probe, watched};
 use super::progress::Cancelled;
-use super::queue::Tag;
 use super::recursive::Recursive;
 use super::region::PixelRect;
 use super::samples::Samples;
-use super::scatter::RAYS_PER_SAMPLE;
 use super::statistics::Statistics;
 use super::wavefront::{CHUNK, Wavefront};
 use crate::math::{Vec3d, Vec3f};
-use crate::ray::RayBatch;
 use crate::scene::Antialias;
+use simd::{F32Lanes, U32Lanes};
 use std::sync::{Mutex, PoisonError};
 
 /// A pixel's final colour.
@@ -32,11 +29,47 @@ pub(super) struct Workspace {
     wavefront: Wavefront,
     recursive: Recursive,
     samples: Samples,
-    /// Numbers of the samples of the batch in the order in which they are traced.
+    places: Places,
+}
+
+/// Where the samples of a batch lie in the picture, in the order in which they are traced.
+#[derive(Debug, Default)]
+pub(super) struct Places {
+    /// In pixels from the upper left corner.
+    axes: [Vec<f32>; 2],
+    /// Numbers of the samples: each of 0.. once.
     numbers: Vec<u32>,
-    /// Where the samples of the batch lie in the picture, in pixels from its upper left corner.
-    places: [Vec<f32>; 2],
-    rays: RayBatch,
+}
+
+impl Places {
+    pub(super) fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    fn clear(&mut self) {
+        self.axes.iter_mut().for_each(Vec::clear);
+        self.numbers.clear();
+    }
+
+    /// Append sample `number`, at a place in a pixel.
+    fn push(&mut self, number: u32, pixel: [u32; 2], place: [f32; 2]) {
+        self.numbers.push(number);
+        for axis in 0..2 {
+            self.axes[axis].push(pixel[axis] as f32 + place[axis]);
+        }
+    }
+
+    /// The places `at` and following with their numbers, in lanes; zero beyond the end.
+    #[inline(always)]
+    pub(super) fn load<L: F32Lanes>(&self, token: L::Token, at: usize) -> ([L; 2], L::U32) {
+        let end = self.len().min(at + L::WIDTH);
+        let (mut axes, mut numbers) = ([L::Array::default(); 2], <L::U32 as U32Lanes>::Array::default());
+        for axis in 0..2 {
+            axes[axis].as_mut()[..end - at].copy_from_slice(&self.axes[axis][at..end]);
+        }
+        numbers.as_mut()[..end - at].copy_from_slice(&self.numbers[at..end]);
+        ([L::load(token, &axes[0]), L::load(token, &axes[1])], L::U32::load(token, &numbers))
+    }
 }
 
 impl Workspace {
@@ -55,8 +88,8 @@ impl Workspace {
     ) -> Result<(), Cancelled> {
         for part in region.parts(CHUNK) {
             watched(probe, Phase::Queue, || {
-                self.begin();
-                part.for_each_in_tiles(|pixel| self.place(part.index(pixel) as u32, pixel, MIDDLE));
+                self.places.clear();
+                part.for_each_in_tiles(|pixel| self.places.push(part.index(pixel) as u32, pixel, MIDDLE));
             });
             self.trace(context, probe)?;
             watched(probe, Phase::Queue, || rows.set(&part, self.samples.colors(), self.samples.first()));
@@ -90,9 +123,9 @@ impl Workspace {
                 break;
             }
             watched(probe, Phase::Refine, || {
-                self.begin();
+                self.places.clear();
                 for (number, &(_, pixel, sample)) in (0..).zip(&batch) {
-                    self.place(number, pixel, strata.place(PixelHash::new(pixel[0], pixel[1], seed), sample));
+                    self.places.push(number, pixel, strata.place(PixelHash::new(pixel[0], pixel[1], seed), sample));
                 }
             });
             self.trace(context, probe)?;
@@ -106,43 +139,16 @@ impl Workspace {
         Ok(pixels.iter().zip(sums).map(|(&pixel, sum)| Refined { pixel, color: mean(sum) }).collect())
     }
 
-    /// Begin a batch.
-    fn begin(&mut self) {
-        self.places.iter_mut().for_each(Vec::clear);
-        self.numbers.clear();
-    }
-
-    /// Add sample `number` to the batch, at a place in a pixel. Numbers count from 0; they come in any order.
-    fn place(&mut self, number: u32, pixel: [u32; 2], place: [f32; 2]) {
-        self.numbers.push(number);
-        for axis in 0..2 {
-            self.places[axis].push(pixel[axis] as f32 + place[axis]);
-        }
-    }
-
     /// Trace the samples of the batch.
     fn trace<P: Probe>(&mut self, context: &Context, probe: &P) -> Result<(), Cancelled> {
-        let count = self.places[0].len();
-        self.samples.reset(count);
-        self.samples.statistics.camera_rays += count as u64;
-        watched(probe, Phase::Queue, || {
-            let [x, y] = &self.places;
-            context.camera.fill(context.execution.level, x, y, &mut self.rays);
-        });
+        let Self { wavefront, recursive, samples, places } = self;
+        samples.reset(places.len());
+        samples.statistics.camera_rays += places.len() as u64;
         match context.execution.method {
-            Method::Wavefront => self.wavefront.run(context, &mut self.rays, &self.numbers, &mut self.samples, probe),
-            Method::Recursive => {
-                let Self { recursive, numbers, rays, samples, .. } = self;
-                let mut run = |(i, &number)| recursive.run(context, &rays.get(i), camera_tag(number), samples);
-                watched(probe, Phase::Trace, || numbers.iter().enumerate().try_for_each(&mut run))
-            }
+            Method::Wavefront => wavefront.run(context, places, samples, probe),
+            Method::Recursive => watched(probe, Phase::Trace, || recursive.run(context, places, samples)),
         }
     }
-}
-
-/// What the camera ray of a sample carries.
-pub(super) fn camera_tag(sample: u32) -> Tag {
-    Tag { sample, weight: Vec3f::ONE, media: Media::default(), budget: RAYS_PER_SAMPLE }
 }
 
 /// Workspaces that no thread is using at the moment: there are never more than threads.

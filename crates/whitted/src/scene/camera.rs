@@ -110,9 +110,14 @@ impl CameraRays {
         simd::dispatch(level, Fill { camera: self, x, y, rays });
     }
 
+    /// Where all rays start.
+    pub(crate) fn eye(&self) -> Vec3f {
+        self.eye
+    }
+
     /// Unit directions through many places.
     #[inline(always)]
-    fn directions<L: F32Lanes>(&self, token: L::Token, x: L, y: L) -> Vec3<L> {
+    pub(crate) fn directions<L: F32Lanes>(&self, token: L::Token, x: L, y: L) -> Vec3<L> {
         let splat = |value| L::splat(token, value);
         // Measured from the middle, steps are small and their errors symmetric.
         let (x, y) = (x - splat(self.middle[0]), y - splat(self.middle[1]));

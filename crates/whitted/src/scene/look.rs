@@ -1,9 +1,10 @@
 //! How everything looks: materials, lights, camera, background.
 
 use super::{Background, Camera, Geometry, Scene, SceneError, check};
-use crate::math::{Aabb, Vec3f};
-use crate::shading::{PreparedLight, PreparedMaterial};
+use crate::math::{Aabb, Vec3, Vec3f};
+use crate::shading::{MaterialTable, PreparedLight, PreparedMaterial};
 use crate::tree::BitSet;
+use simd::F32Lanes;
 
 /// Where shadow rays start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +23,7 @@ const DISTANT: f32 = 64.0;
 #[derive(Clone, Debug)]
 pub struct Look {
     materials: Vec<PreparedMaterial>,
+    table: MaterialTable,
     lights: Vec<(PreparedLight, ShadowOrigin)>,
     ambient: Vec3f,
     background: Background,
@@ -48,6 +50,7 @@ impl Look {
             background: scene.background,
             camera: Camera { eye: space.point(camera.eye), look_at: space.point(camera.look_at), ..*camera },
             opaque: opaque(geometry, &materials),
+            table: MaterialTable::new(&materials),
             materials,
         })
     }
@@ -73,13 +76,21 @@ impl Look {
         self.opaque.as_ref()
     }
 
-    /// What a ray sees that hits nothing. `direction` need not be normalised.
-    pub(crate) fn background(&self, direction: Vec3f) -> Vec3f {
+    /// All materials, for lanes.
+    pub(crate) fn table(&self) -> &MaterialTable {
+        &self.table
+    }
+
+    /// What rays see that hit nothing. `direction` need not be normalised.
+    #[inline(always)]
+    pub(crate) fn background<L: F32Lanes>(&self, token: L::Token, direction: Vec3<L>) -> Vec3<L> {
         match self.background {
-            Background::Color(color) => color,
+            Background::Color(color) => Vec3::lanes(token, color),
             Background::Gradient { down, up } => {
-                let share = direction.y / direction.length() * 0.5 + 0.5;
-                down * (1.0 - share) + up * share
+                let half = L::splat(token, 0.5);
+                let share = direction.y / direction.length_squared().sqrt() * half + half;
+                let (down, up) = (Vec3::lanes(token, down), Vec3::lanes(token, up));
+                down * (L::splat(token, 1.0) - share) + up * share
             }
         }
     }

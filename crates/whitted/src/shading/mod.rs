@@ -10,12 +10,14 @@ mod material;
 pub(crate) mod one;
 mod optics;
 mod prepared;
+mod table;
 mod texture;
 
 pub use light::{Arriving, PreparedLight};
 pub use local::{LocalModel, LocalSurface};
 pub use material::{Material, Reflectance, SpecularModel, Texture};
 pub use prepared::{PreparedMaterial, fresnel, mirrored, refracted, schlick};
+pub(crate) use table::{Finish, MaterialTable, Scattering};
 pub use texture::PreparedTexture;
 
 /// The functions for many rays at once.

@@ -49,6 +49,23 @@ pub fn schlick<L: F32Lanes>(token: L::Token, cos_i: L, eta: L) -> L {
     L::select(squared.ge(L::splat(token, 0.0)), r0 + (one - r0) * (a_squared * a_squared * a), one)
 }
 
+/// What is left of light after `distance` ≥ 0 in a medium that halves it so many times per length (Beer, Lambert); 1
+/// where nothing is absorbed, even at infinity.
+#[inline(always)]
+pub(super) fn transmittance<L: F32Lanes>(token: L::Token, halvings: Vec3<L>, distance: L) -> Vec3<L> {
+    Vec3::new(
+        left_of_light(token, halvings.x, distance),
+        left_of_light(token, halvings.y, distance),
+        left_of_light(token, halvings.z, distance),
+    )
+}
+
+#[inline(always)]
+fn left_of_light<L: F32Lanes>(token: L::Token, halvings: L, distance: L) -> L {
+    let left = simd::math::lanes::exp2(token, -halvings * distance);
+    L::select(halvings.eq(L::splat(token, 0.0)), L::splat(token, 1.0), left)
+}
+
 /// The square of the cosine beyond the surface; negative where reflection is total.
 #[inline(always)]
 fn cos_t_squared<L: F32Lanes>(token: L::Token, cos_i: L, eta: L) -> L {

@@ -2,6 +2,7 @@
 
 use super::local::{self, LocalModel};
 use super::one::{One, one, ones, value, values};
+use super::table::Scattering;
 use super::{Material, PreparedTexture, Reflectance, optics};
 use crate::math::{Vec3d, Vec3f};
 use simd::Scalar;
@@ -71,6 +72,22 @@ impl PreparedMaterial {
         self.transmit
     }
 
+    /// What [`Scattering`] is made of.
+    pub(super) fn scattering_row(&self) -> [f32; 8] {
+        let (reflect, transmit) = (self.reflect, self.transmit);
+        let code = match self.reflectance {
+            Reflectance::Constant => Scattering::CONSTANT,
+            Reflectance::Fresnel => Scattering::FRESNEL,
+            Reflectance::Schlick => Scattering::SCHLICK,
+        };
+        [reflect.x, reflect.y, reflect.z, transmit.x, transmit.y, transmit.z, self.ior, code]
+    }
+
+    /// Halvings of light per internal length of the inside.
+    pub(super) fn absorb(&self) -> Vec3f {
+        self.absorb
+    }
+
     /// The parameters of the local model.
     pub fn local(&self) -> &LocalModel {
         &self.local
@@ -94,7 +111,7 @@ impl PreparedMaterial {
 
     /// What is left of light after `distance` ≥ 0 inside (Beer, Lambert); 1 where nothing is absorbed, even at infinity.
     pub fn transmittance(&self, distance: f32) -> Vec3f {
-        self.absorb.map(|a| if a == 0.0 { 1.0 } else { simd::math::exp2(-a * distance) })
+        values(optics::transmittance::<One>(Scalar, ones(self.absorb), one(distance)))
     }
 
     /// The shares of light that are reflected and refracted, for a ray that arrives with `cos_i` ≥ 0 from the normal and
@@ -104,15 +121,10 @@ impl PreparedMaterial {
     /// Total reflection reflects what would have been refracted: constant shares are added, Fresnel's and Schlick's
     /// reflectance become 1.
     pub fn split(&self, cos_i: f32, eta: f32, total: bool) -> (Vec3f, Vec3f) {
-        let total = total && self.is_transparent();
-        let reflectance = match self.reflectance {
-            Reflectance::Constant if total => return (self.reflect + self.transmit, Vec3f::ZERO),
-            Reflectance::Constant => return (self.reflect, self.transmit),
-            _ if total => 1.0,
-            Reflectance::Fresnel => fresnel(cos_i, eta),
-            Reflectance::Schlick => schlick(cos_i, eta),
-        };
-        (self.reflect * reflectance, self.transmit * (1.0 - reflectance))
+        let total = simd::MaskLanes::from_bits(Scalar, u32::from(total && self.is_transparent()));
+        let scattering = Scattering::from_row(self.scattering_row().map(one));
+        let (reflect, transmit) = scattering.split(Scalar, one(cos_i), one(eta), total);
+        (values(reflect), values(transmit))
     }
 }
 

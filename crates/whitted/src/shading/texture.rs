@@ -1,7 +1,7 @@
 //! Colours that depend on where.
 
 use super::Texture;
-use crate::math::{Vec3, Vec3d, Vec3f};
+use crate::math::{Vec3, Vec3d, Vec3f, select};
 use simd::F32Lanes;
 
 /// A texture, ready for points of internal space.
@@ -45,13 +45,25 @@ impl PreparedTexture {
         match *self {
             Self::Color(color) => color.map(splat),
             Self::Checker { colors: [even, odd], frequency, shift } => {
-                let cube = position.zip(shift, |p, s| (p * splat(frequency) + splat(s)).floor());
-                let odds = cube.map(|n| parity(token, n));
-                let is_odd = parity(token, odds.x + odds.y + odds.z).gt(splat(0.5));
-                even.zip(odd, |even, odd| L::select(is_odd, splat(odd), splat(even)))
+                checker(token, even.map(splat), odd.map(splat), splat(frequency), shift.map(splat), position)
             }
         }
     }
+}
+
+/// The colour of the cube in which a point lies; see [`PreparedTexture::Checker`].
+#[inline(always)]
+pub(super) fn checker<L: F32Lanes>(
+    token: L::Token,
+    even: Vec3<L>,
+    odd: Vec3<L>,
+    frequency: L,
+    shift: Vec3<L>,
+    position: Vec3<L>,
+) -> Vec3<L> {
+    let cube = position * frequency + shift;
+    let sum = parity(token, cube.x.floor()) + parity(token, cube.y.floor()) + parity(token, cube.z.floor());
+    select(parity(token, sum).gt(L::splat(token, 0.5)), odd, even)
 }
 
 /// 0 for even and 1 for odd integers of any size, exactly.
