@@ -94,10 +94,16 @@ impl Bounds {
         sides[0] + sides[1] + sides[2]
     }
 
+    /// The box of one point.
+    #[inline(always)]
+    pub(super) fn point([x, y, z]: [f32; 3]) -> Self {
+        Self([x, y, z, 0.0, -x, -y, -z, 0.0])
+    }
+
     /// Grow by a point.
     #[inline(always)]
-    pub(super) fn include(&mut self, [x, y, z]: [f32; 3]) {
-        *self = self.union(Self([x, y, z, 0.0, -x, -y, -z, 0.0]));
+    pub(super) fn include(&mut self, point: [f32; 3]) {
+        *self = self.union(Self::point(point));
     }
 
     #[inline(always)]
@@ -124,6 +130,14 @@ impl Bounds {
     #[inline(always)]
     pub(super) fn set_hi(&mut self, axis: usize, value: f32) {
         self.0[4 + axis] = -value;
+    }
+
+    /// The slice at a place of an axis.
+    #[inline(always)]
+    pub(super) fn slice(mut self, axis: usize, at: f32) -> Self {
+        self.set_lo(axis, at);
+        self.set_hi(axis, at);
+        self
     }
 
     #[inline(always)]

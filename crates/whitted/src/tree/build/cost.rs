@@ -2,6 +2,7 @@
 
 use super::super::leaf::BLOCK;
 use super::{Bounds, BuildOptions};
+use simd::Simd;
 
 /// Expected cost of testing `count` primitives.
 ///
@@ -23,11 +24,12 @@ pub(super) fn blocks(count: usize) -> f32 {
     count.div_ceil(BLOCK) as f32
 }
 
-/// Expected cost of a node of half area `area` with two children.
+/// Expected cost of a node of half area `area` with two children, each a box and a number of references.
 #[inline(always)]
-pub(super) fn split(options: &BuildOptions, area: f32, left: (Bounds, usize), right: (Bounds, usize)) -> f32 {
-    let side = |(bounds, count): (Bounds, usize)| bounds.half_area() * leaf(options, count);
+pub(super) fn split<S: Simd>(token: S, options: &BuildOptions, area: f32, [left, right]: [(Bounds, usize); 2]) -> f32 {
+    let left_side = left.0.half_area_lanes(token) * leaf(options, left.1);
+    let right_side = right.0.half_area_lanes(token) * leaf(options, right.1);
     // In a box without area every ray that enters it enters both halves.
-    let chance = if area > 0.0 { (side(left) + side(right)) / area } else { leaf(options, left.1 + right.1) };
+    let chance = if area > 0.0 { (left_side + right_side) / area } else { leaf(options, left.1 + right.1) };
     options.traversal_cost + chance
 }

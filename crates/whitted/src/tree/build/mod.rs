@@ -17,6 +17,7 @@ mod flatten;
 mod object_split;
 mod plan;
 mod reference;
+mod section;
 mod spatial_split;
 
 use super::TreeKind;

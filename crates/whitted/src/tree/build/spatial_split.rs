@@ -1,127 +1,222 @@
 //! Spatial splits: by a plane, cutting what straddles it.
 
-use super::reference::Reference;
+use super::clip::Solid;
+use super::reference::{Reference, partition};
+use super::section::{PLANES, Sections, following, sections};
 use super::{Bounds, Builder, cost};
+use simd::{F32Lanes, Kernel, Simd};
 
-/// Most bins per axis; planes lie on their borders.
-const MAX_BINS: usize = 16;
-
-/// Bins for a number of references.
-fn bin_count(references: usize) -> usize {
-    (references / 4 + 8).min(MAX_BINS)
-}
+/// Bins per axis; planes lie on their borders.
+const BINS: usize = PLANES;
 
 /// Cut space by a plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpatialSplit {
     /// Expected cost of the node with this split.
     pub cost: f32,
-    /// References that it adds.
+    /// References that it adds at most.
     pub added: usize,
     axis: usize,
-    position: f32,
-}
-
-#[derive(Clone, Copy)]
-struct Bin {
-    bounds: Bounds,
-    starts: usize,
-    ends: usize,
-}
-
-const EMPTY_BIN: Bin = Bin { bounds: Bounds::EMPTY, starts: 0, ends: 0 };
-
-/// The cheapest plane; `None` if none leaves something on both sides.
-pub(super) fn find(builder: &Builder<'_>, references: &[Reference], bounds: Bounds) -> Option<SpatialSplit> {
-    let count = bin_count(references.len());
-    let planes = [0, 1, 2].map(|axis| Planes::new(bounds.lo(axis), bounds.hi(axis), count));
-    let mut bins = [[EMPTY_BIN; MAX_BINS]; 3];
-    for reference in references {
-        for axis in 0..3 {
-            if let Some(planes) = &planes[axis] {
-                fill(builder, &mut bins[axis], reference, planes, axis);
-            }
-        }
-    }
-    (0..3)
-        .filter_map(|axis| {
-            sweep(builder, &bins[axis][..count], references.len(), bounds.half_area(), &planes[axis]?, axis)
-        })
-        .min_by(|a, b| a.cost.total_cmp(&b.cost))
+    planes: Planes,
+    border: usize,
 }
 
 /// Planes at equal distances along one axis of a box.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Planes {
     start: f32,
     step: f32,
     per_unit: f32,
-    last: usize,
 }
 
 impl Planes {
     /// `None` for a cell too thin for distinct planes.
-    fn new(lo: f32, hi: f32, count: usize) -> Option<Self> {
-        let step = (hi - lo) / count as f32;
-        let planes = Self { start: lo, step, per_unit: 1.0 / step, last: count - 1 };
-        (planes.border(1) > lo && planes.border(count - 1) < hi && planes.per_unit.is_finite()).then_some(planes)
+    #[inline(always)]
+    fn new(lo: f32, hi: f32) -> Option<Self> {
+        let step = (hi - lo) / BINS as f32;
+        let planes = Self { start: lo, step, per_unit: 1.0 / step };
+        let distinct = planes.border(1) > lo && planes.border(BINS - 1) < hi && planes.per_unit.is_finite();
+        distinct.then_some(planes)
     }
 
+    #[inline(always)]
     fn border(&self, bin: usize) -> f32 {
         self.start + self.step * bin as f32
     }
 
+    /// Not a number for the first bin, whose lower border cuts nothing.
+    #[inline(always)]
+    fn borders(&self) -> [f32; PLANES] {
+        let mut borders = [f32::NAN; PLANES];
+        for bin in 1..BINS {
+            borders[bin] = self.border(bin);
+        }
+        borders
+    }
+
+    #[inline(always)]
     fn bin(&self, value: f32) -> usize {
-        (((value - self.start) * self.per_unit) as usize).min(self.last)
+        (((value - self.start) * self.per_unit) as usize).min(BINS - 1)
     }
 }
 
-/// Chop a reference at every plane that it straddles and add the pieces to their bins.
-fn fill(builder: &Builder<'_>, bins: &mut [Bin; MAX_BINS], reference: &Reference, planes: &Planes, axis: usize) {
-    let first = planes.bin(reference.bounds().lo(axis)) % MAX_BINS;
-    let last = planes.bin(reference.bounds().hi(axis)) % MAX_BINS;
-    bins[first].starts += 1;
-    bins[last].ends += 1;
-    if first == last {
-        bins[first].bounds = bins[first].bounds.union(*reference.bounds());
-        return;
-    }
-    let solid = builder.solid(reference);
-    for bin in first..=last {
-        let lo = if bin == first { f32::NEG_INFINITY } else { planes.border(bin) };
-        let hi = if bin == last { f32::INFINITY } else { planes.border(bin + 1) };
-        bins[bin].bounds = bins[bin].bounds.union(solid.slab(reference, axis, lo, hi));
+/// The cheapest plane; `None` if none leaves something on both sides.
+pub(super) fn find(builder: &Builder<'_>, references: &[Reference], bounds: Bounds) -> Option<SpatialSplit> {
+    simd::dispatch(builder.level, Find { builder, references, bounds })
+}
+
+struct Find<'a> {
+    builder: &'a Builder<'a>,
+    references: &'a [Reference],
+    bounds: Bounds,
+}
+
+impl Kernel for Find<'_> {
+    type Output = Option<SpatialSplit>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, token: S) -> Self::Output {
+        let mut best = None;
+        for axis in 0..3 {
+            if let Some(planes) = Planes::new(self.bounds.lo(axis), self.bounds.hi(axis)) {
+                let mut bins = Bins::fill(token, &self, axis, planes);
+                bins.add_sections(token, axis, planes);
+                bins.sweep(token, &self, axis, planes, &mut best);
+            }
+        }
+        best
     }
 }
 
-fn sweep(
-    builder: &Builder<'_>,
-    bins: &[Bin],
-    count: usize,
-    area: f32,
-    planes: &Planes,
-    axis: usize,
-) -> Option<SpatialSplit> {
-    let mut right = [(Bounds::EMPTY, 0); MAX_BINS];
-    let mut sum = (Bounds::EMPTY, 0);
-    for border in (1..bins.len()).rev() {
-        sum = (sum.0.union(bins[border].bounds), sum.1 + bins[border].ends);
-        right[border] = sum;
+/// Parts of references by bin of one axis.
+struct Bins<S: Simd> {
+    bounds: [Bounds; BINS],
+    starts: [u32; BINS],
+    ends: [u32; BINS],
+    sections: Sections<S::F32x16>,
+}
+
+impl<S: Simd> Bins<S> {
+    #[inline(always)]
+    fn fill(token: S, cell: &Find<'_>, axis: usize, planes: Planes) -> Self {
+        let borders = S::F32x16::load(token, &planes.borders());
+        let mut bins = Self {
+            bounds: [Bounds::EMPTY; BINS],
+            starts: [0; BINS],
+            ends: [0; BINS],
+            sections: Sections::empty(token),
+        };
+        for reference in cell.references {
+            let bounds = reference.bounds();
+            let (first, last) = (planes.bin(bounds.lo(axis)), planes.bin(bounds.hi(axis)));
+            bins.starts[first] += 1;
+            bins.ends[last] += 1;
+            if first == last {
+                bins.include(token, first, bounds);
+                continue;
+            }
+            let solid = cell.builder.solid(reference);
+            bins.sections = bins.sections.union(sections(token, &solid, reference, axis, borders));
+            bins.add_ends(token, &solid, reference, axis, planes);
+        }
+        bins
     }
-    let mut best: Option<SpatialSplit> = None;
-    let mut left = (Bounds::EMPTY, 0);
-    for border in 1..bins.len() {
-        left = (left.0.union(bins[border - 1].bounds), left.1 + bins[border - 1].starts);
-        let right = right[border];
-        // A plane that every reference straddles gains nothing and would be chosen for ever.
-        let gains = left.1 > 0 && right.1 > 0 && left.1 < count && right.1 < count;
-        let cost = cost::split(builder.options, area, left, right);
-        if gains && best.is_none_or(|best| cost < best.cost) {
-            let added = left.1 + right.1 - count;
-            best = Some(SpatialSplit { cost, added, axis, position: planes.border(border) });
+
+    #[inline(always)]
+    fn include(&mut self, token: S, bin: usize, bounds: &Bounds) {
+        let bin = &mut self.bounds[bin % BINS];
+        bin.set_lanes(bin.lanes(token).min(bounds.lanes(token)));
+    }
+
+    /// Add what lies between planes: vertices, and the ends of a reference that was cut before.
+    #[inline(always)]
+    fn add_ends(&mut self, token: S, solid: &Solid, reference: &Reference, axis: usize, planes: Planes) {
+        let bounds = reference.bounds();
+        let (lo, hi) = (bounds.lo(axis), bounds.hi(axis));
+        let (mut is_cut_below, mut is_cut_above) = (true, true);
+        match solid {
+            Solid::Triangle(vertices) => {
+                (is_cut_below, is_cut_above) = (false, false);
+                for &vertex in vertices {
+                    is_cut_below |= vertex[axis] < lo;
+                    is_cut_above |= vertex[axis] > hi;
+                    if lo <= vertex[axis] && vertex[axis] <= hi {
+                        self.include(token, planes.bin(vertex[axis]), &Bounds::point(vertex).intersection(*bounds));
+                    }
+                }
+            }
+            Solid::Sphere { center, radius } => {
+                let middle = center[axis];
+                if lo <= middle && middle <= hi {
+                    self.include(token, planes.bin(middle), &bounds.slice(axis, middle));
+                }
+                (is_cut_below, is_cut_above) = (middle - radius < lo.next_down(), middle + radius > hi.next_up());
+                for (is_cut, end) in [(is_cut_below, lo), (is_cut_above, hi)] {
+                    if !is_cut {
+                        let pole = Bounds::point(*center).slice(axis, end);
+                        self.include(token, planes.bin(end), &pole.intersection(*bounds));
+                    }
+                }
+            }
+            Solid::Boxed => {}
+        }
+        if is_cut_below {
+            self.include(token, planes.bin(lo), &solid.slab(reference, axis, lo, lo));
+        }
+        if is_cut_above {
+            self.include(token, planes.bin(hi), &solid.slab(reference, axis, hi, hi));
         }
     }
-    best
+
+    /// Add the sections with each plane to the bins on its two sides.
+    #[inline(always)]
+    fn add_sections(&mut self, token: S, axis: usize, planes: Planes) {
+        let [u, v] = following(axis);
+        let mut rows = [[0.0; PLANES]; 4];
+        for row in 0..4 {
+            self.sections.0[row].store(&mut rows[row]);
+        }
+        for border in 1..BINS {
+            let mut section = Bounds::EMPTY;
+            section.set_lo(axis, planes.border(border));
+            section.set_hi(axis, planes.border(border));
+            section.set_lo(u, rows[0][border]);
+            section.set_lo(v, rows[1][border]);
+            section.set_hi(u, -rows[2][border]);
+            section.set_hi(v, -rows[3][border]);
+            if rows[0][border] < f32::INFINITY {
+                self.include(token, border - 1, &section);
+                self.include(token, border, &section);
+            }
+        }
+    }
+
+    /// Look for a plane that is cheaper than `best`.
+    #[inline(always)]
+    fn sweep(&self, token: S, cell: &Find<'_>, axis: usize, planes: Planes, best: &mut Option<SpatialSplit>) {
+        let (options, area, count) = (cell.builder.options, cell.bounds.half_area(), cell.references.len() as u32);
+        let mut right = [(Bounds::EMPTY, 0); BINS];
+        let (mut sum, mut number) = (Bounds::EMPTY.lanes(token), 0);
+        for border in (1..BINS).rev() {
+            sum = sum.min(self.bounds[border].lanes(token));
+            number += self.ends[border];
+            right[border] = (Bounds::from_lanes(sum), number);
+        }
+        let (mut sum, mut number) = (Bounds::EMPTY.lanes(token), 0);
+        for border in 1..BINS {
+            sum = sum.min(self.bounds[border - 1].lanes(token));
+            number += self.starts[border - 1];
+            let (right_bounds, right_number) = right[border];
+            // A plane that every reference straddles gains nothing and would be chosen for ever.
+            let gains = number > 0 && right_number > 0 && number < count && right_number < count;
+            let sides = [(Bounds::from_lanes(sum), number as usize), (right_bounds, right_number as usize)];
+            let cost = cost::split(token, options, area, sides);
+            if gains && best.is_none_or(|best| cost < best.cost) {
+                let added = (number + right_number - count) as usize;
+                *best = Some(SpatialSplit { cost, added, axis, planes, border });
+            }
+        }
+    }
 }
 
 /// Apply a split: left parts come to the front (their number is returned), uncut right ones follow, and right parts of
@@ -132,12 +227,14 @@ pub(super) fn cut(
     references: &mut [Reference],
     cut_off: &mut Vec<Reference>,
 ) -> usize {
-    let (axis, position) = (split.axis, split.position);
-    let mut left_count = super::partition(references, |r| r.bounds().lo(axis) < position);
+    let (axis, planes) = (split.axis, split.planes);
+    let position = planes.border(split.border);
+    // By bins, not by position: no more are cut than were counted.
+    let mut left_count = partition(references, |r| planes.bin(r.bounds().lo(axis)) < split.border);
     let mut index = 0;
     while index < left_count {
         let whole = references[index];
-        if whole.bounds().hi(axis) <= position {
+        if planes.bin(whole.bounds().hi(axis)) < split.border {
             index += 1;
             continue;
         }
