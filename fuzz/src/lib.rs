@@ -4,7 +4,9 @@
 
 use std::path::Path;
 
+use formats::rays::{RayFormat, RayReader};
 use formats::{Format, LoadOptions};
+use whitted::ray::RayBatch;
 
 /// Read `bytes`. A panic, a second or 512 MiB is a finding; so is a scene that breaks a promise of its types.
 pub fn read(format: Format, bytes: &[u8]) {
@@ -23,4 +25,14 @@ pub fn read(format: Format, bytes: &[u8]) {
         }
         Err(error) => assert!(!error.to_string().is_empty()),
     }
+}
+
+/// Read a table of rays in the format that the first byte chooses, a few at a time: every answer but a panic or a hang
+/// will do.
+pub fn read_rays(bytes: &[u8]) {
+    let Some((&choice, rest)) = bytes.split_first() else { return };
+    let (_, format) = RayFormat::ALL[usize::from(choice) % RayFormat::ALL.len()];
+    let Ok(mut reader) = RayReader::new(format, Path::new("rays"), rest) else { return };
+    let mut rays = RayBatch::new();
+    while reader.read(&mut rays, 7).is_ok() && !rays.is_empty() {}
 }

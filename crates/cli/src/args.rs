@@ -1,6 +1,7 @@
 //! The command line: every option, and the reading of its value. What the options mean for a render is in `render.rs`.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use formats::rays::{HitFormat, RayFormat};
 use std::path::PathBuf;
 use std::str::FromStr;
 use whitted::render::{Method, Region};
@@ -9,7 +10,19 @@ use whitted::tree::{TreeKind, WalkKind};
 
 /// Exit codes, shown below the help.
 const EXIT_CODES: &str = "\
-Exit codes: 0 done, 1 a file could not be read or written or the render failed, 2 wrong usage, 3 error in the scene, \
+Exit codes: 0 done, 1 a file could not be read or written or the render failed, 2 wrong usage, 3 error in the scene or the rays, \
+130 interrupted.";
+
+/// The columns of rays and hits, shown below the help of `trace`.
+const TABLES: &str = "\
+Rays: a CSV file names its columns in the first line: ox,oy,oz,dx,dy,dz and, if wanted, t_min,t_max, in any order. A \
+NumPy array has the shape (n, 6) or (n, 8). Raw rays are six (.f32) or eight (.f32x8) little-endian numbers each.
+
+Hits: t,primitive,u,v,nx,ny,nz, a line for each ray, in order; t in lengths of the ray's direction, primitives counted \
+from 0, the geometric normal of length 1. A miss has t = inf and no primitive (-1 in a NumPy or raw file, whose records \
+are f32 t, i32 primitive, f32 u, v, nx, ny, nz).
+
+Exit codes: 0 done, 1 a file could not be read or written, 2 wrong usage, 3 error in the scene or the rays, \
 130 interrupted.";
 
 /// Ray tracer in the manner of Whitted: exact, deterministic, on the CPU.
@@ -28,6 +41,34 @@ pub(crate) enum Command {
     /// Read a scene, report what is wrong with it, and render nothing
     #[command(after_help = EXIT_CODES)]
     Check(CheckArguments),
+    /// Find what each ray of a table hits first
+    #[command(after_help = TABLES)]
+    Trace(TraceArguments),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TraceArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Rays (.csv, .npy, .f32, .f32x8), or - for standard input
+    pub(crate) rays: PathBuf,
+    /// Hits to write (.csv, .npy, .f32), or - for standard output [default: -]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// How the rays are written down [default: as their name says; csv for standard input]
+    #[arg(long, value_name = "csv|npy|f32|f32x8", value_parser = parse_named(&RayFormat::ALL))]
+    pub(crate) rays_format: Option<RayFormat>,
+    /// How to write the hits down [default: as their name says; as the rays for standard output]
+    #[arg(long, value_name = "csv|npy|f32", value_parser = parse_named(&HitFormat::ALL))]
+    pub(crate) hits_format: Option<HitFormat>,
+    /// Threads [default: one per core]
+    #[arg(short, long, value_name = "N", value_parser = parse_threads)]
+    pub(crate) threads: Option<usize>,
+    /// Splits that the tree may use; never changes a hit [default: best]
+    #[arg(long, value_name = "best|fast|kd|none", value_parser = parse_named(&TREES))]
+    pub(crate) tree: Option<TreeKind>,
+    #[command(flatten)]
+    pub(crate) verbosity: Verbosity,
 }
 
 #[derive(Debug, Args)]

@@ -1,6 +1,6 @@
 //! Ctrl-C: the first asks the render to stop, the second ends the process at once.
 
-use crate::exit::INTERRUPTED;
+use crate::exit::{Failure, INTERRUPTED};
 use whitted::render::Cancel;
 
 static CANCEL: Cancel = Cancel::new();
@@ -17,4 +17,9 @@ pub(crate) fn install() -> &'static Cancel {
     // Without a handler the system's default remains: Ctrl-C ends the process, and nothing is under the final name.
     drop(installed);
     &CANCEL
+}
+
+/// The end of the work if the user asked for it.
+pub(crate) fn stop_if(cancel: &Cancel) -> Result<(), Failure> {
+    if cancel.is_cancelled() { Err(Failure::Interrupted) } else { Ok(()) }
 }

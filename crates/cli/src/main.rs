@@ -1,12 +1,12 @@
-//! The command `whitted`: renders scenes and checks them.
+//! The command `whitted`: renders scenes, checks them, and traces rays for other programs.
 //!
 //! It knows arguments, files' final names, progress and reports. What a scene means is `formats`' to say, and how a
 //! picture is computed the library's.
 //!
 //! # Invariants
-//! * A picture is under its final name only when it is whole.
+//! * A picture, or a table of hits, is under its final name only when it is whole.
 //! * What could be known to fail before rendering fails before rendering.
-//! * Standard output carries only what was asked for (a picture, statistics); everything else goes to standard error.
+//! * Standard output carries only what was asked for (a picture, hits, statistics); everything else goes to standard error.
 
 #![forbid(unsafe_code)]
 
@@ -21,6 +21,7 @@ mod render;
 mod report;
 mod settings;
 mod stopwatch;
+mod trace;
 
 use clap::Parser;
 use std::process::ExitCode;
@@ -29,5 +30,6 @@ fn main() -> ExitCode {
     exit::finish(match args::Arguments::parse().command {
         args::Command::Render(arguments) => render::run(&arguments),
         args::Command::Check(arguments) => check::run(&arguments),
+        args::Command::Trace(arguments) => trace::run(&arguments),
     })
 }

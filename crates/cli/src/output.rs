@@ -3,7 +3,7 @@
 use crate::exit::Failure;
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// A checked destination.
@@ -41,6 +41,35 @@ impl Target {
         self.place == other.place
     }
 
+    /// True for standard output.
+    pub(crate) fn is_stdout(&self) -> bool {
+        self.place == Place::Stdout
+    }
+
+    /// True for a regular file, whose beginning can be written last.
+    pub(crate) fn is_file(&self) -> bool {
+        matches!(self.place, Place::File(_))
+    }
+
+    /// Opens it for writing piece by piece: a file appears under its name only when it is finished.
+    pub(crate) fn open(&self) -> Result<Sink, Failure> {
+        let opened = match &self.place {
+            Place::Stdout => Ok((Stream::Stdout(io::stdout()), None)),
+            Place::Special(path) => File::options().write(true).open(path).map(|file| (Stream::File(file), None)),
+            Place::File(path) => {
+                let temporary = temporary_beside(path);
+                let file = File::create_new(&temporary);
+                file.map(|file| (Stream::File(file), Some(Unfinished { temporary, path: path.clone() })))
+            }
+        };
+        let (stream, unfinished) = opened.map_err(|error| self.refused(&error))?;
+        Ok(Sink { target: self.clone(), stream, unfinished })
+    }
+
+    fn refused(&self, error: &io::Error) -> Failure {
+        Failure::Io(format!("cannot write {self}: {error}"))
+    }
+
     /// Writes everything: a file appears under its name only when whole and on disk.
     pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         let written = match &self.place {
@@ -48,7 +77,57 @@ impl Target {
             Place::Special(path) => File::options().write(true).open(path).and_then(|file| write_all(file, bytes)),
             Place::File(path) => replace(path, bytes),
         };
-        written.map_err(|error| Failure::Io(format!("cannot write {self}: {error}")))
+        written.map_err(|error| self.refused(&error))
+    }
+}
+
+/// A destination that is being written. Dropped before it is finished, it leaves no file.
+pub(crate) struct Sink {
+    target: Target,
+    stream: Stream,
+    unfinished: Option<Unfinished>,
+}
+
+enum Stream {
+    Stdout(io::Stdout),
+    File(File),
+}
+
+/// A file under a temporary name; removed when dropped.
+struct Unfinished {
+    temporary: PathBuf,
+    path: PathBuf,
+}
+
+impl Sink {
+    /// Appends bytes.
+    pub(crate) fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        let written = match &mut self.stream {
+            Stream::Stdout(stdout) => write_all(stdout, bytes),
+            Stream::File(file) => file.write_all(bytes),
+        };
+        written.map_err(|error| self.target.refused(&error))
+    }
+
+    /// Replaces the first bytes; only for a [file](Target::is_file).
+    pub(crate) fn rewrite_start(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        let Stream::File(file) = &mut self.stream else { return Ok(()) };
+        let written = file.seek(SeekFrom::Start(0)).and_then(|_| file.write_all(bytes));
+        written.map_err(|error| self.target.refused(&error))
+    }
+
+    /// Brings a file to disk and under its name.
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        let (Stream::File(file), Some(unfinished)) = (&self.stream, &self.unfinished) else { return Ok(()) };
+        let finished = file.sync_all().and_then(|()| fs::rename(&unfinished.temporary, &unfinished.path));
+        finished.map_err(|error| self.target.refused(&error))
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        // After it was renamed there is nothing to remove; else the error that ended the work is the one to report.
+        let _ = fs::remove_file(&self.temporary);
     }
 }
 

@@ -41,16 +41,54 @@ fn bar() -> ProgressBar {
     ProgressBar::with_draw_target(Some(1), draw).with_style(style)
 }
 
+/// How far a table of rays is.
+pub(crate) struct Done {
+    pub(crate) rays: u64,
+    /// Bytes read.
+    pub(crate) read: u64,
+    /// Bytes to read in all, if that is known.
+    pub(crate) bytes: Option<u64>,
+}
+
+impl Done {
+    fn words(&self) -> String {
+        match self.bytes {
+            Some(bytes) => format!("tracing {} %", (100 * self.read).checked_div(bytes).unwrap_or(100)),
+            None => format!("tracing {} rays", self.rays),
+        }
+    }
+}
+
+impl Display {
+    /// Shows how far a table of rays is.
+    pub(crate) fn rays_done(&self, done: &Done) {
+        match self {
+            Self::Quiet => {}
+            Self::Lines(ticker) => line_if_due(ticker, || done.words()),
+            Self::Bar(bar) => {
+                bar.set_message(if done.bytes.is_some() { "tracing".to_owned() } else { done.words() });
+                bar.set_length(done.bytes.unwrap_or(1));
+                bar.set_position(if done.bytes.is_some() { done.read } else { 0 });
+            }
+        }
+    }
+}
+
+/// Prints a plain line if the last one is long enough ago.
+fn line_if_due(ticker: &Mutex<Ticker>, words: impl FnOnce() -> String) {
+    // A poisoned ticker only means that another thread panicked while printing.
+    let Ok(mut ticker) = ticker.lock() else { return };
+    if ticker.is_due(Instant::now()) {
+        eprintln!("{}", words());
+    }
+}
+
 impl Progress for Display {
     fn regions_done(&self, phase: u32, done: usize, total: usize) {
         match self {
             Self::Quiet => {}
             Self::Lines(ticker) => {
-                // A poisoned ticker only means that another thread panicked while printing.
-                let Ok(mut ticker) = ticker.lock() else { return };
-                if ticker.is_due(Instant::now()) {
-                    eprintln!("{} {} %", phase_name(phase), 100 * done / total.max(1));
-                }
+                line_if_due(ticker, || format!("{} {} %", phase_name(phase), 100 * done / total.max(1)));
             }
             Self::Bar(bar) => {
                 bar.set_message(phase_name(phase));

@@ -3,7 +3,7 @@
 use crate::args::{RenderArguments, Stats};
 use crate::check::contents;
 use crate::exit::Failure;
-use crate::interrupt;
+use crate::interrupt::{self, stop_if};
 use crate::load::load;
 use crate::output::Target;
 use crate::progress::Display;
@@ -110,10 +110,6 @@ fn write(frame: &Frame, scene: &Scene, target: &Target, cancel: &Cancel) -> Resu
     let png = png.map_err(|error| Failure::Io(error.to_string()))?;
     stop_if(cancel)?;
     target.write(&png)
-}
-
-fn stop_if(cancel: &Cancel) -> Result<(), Failure> {
-    if cancel.is_cancelled() { Err(Failure::Interrupted) } else { Ok(()) }
 }
 
 fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {

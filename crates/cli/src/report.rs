@@ -109,7 +109,7 @@ fn group_of(key: &str) -> Option<&str> {
 }
 
 /// The most memory this process has had resident at once; `None` where the system does not tell.
-fn peak_memory_bytes() -> Option<u64> {
+pub(crate) fn peak_memory_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;

@@ -63,8 +63,13 @@ impl ExecutionArguments {
 
     /// The threads that render.
     pub(crate) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
-        // Zero asks rayon for one thread per core.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0));
-        pool.build().map_err(|error| Failure::Io(format!("cannot start threads: {error}")))
+        pool(self.threads)
     }
+}
+
+/// So many threads.
+pub(crate) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+    // Zero asks rayon for one thread per core.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
+    pool.build().map_err(|error| Failure::Io(format!("cannot start threads: {error}")))
 }

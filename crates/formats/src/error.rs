@@ -102,6 +102,14 @@ impl Error {
         self
     }
 
+    /// The same error, in another line of its text.
+    pub(crate) fn on_line(mut self, number: usize) -> Self {
+        if let Place::Text { line, .. } = &mut self.report.place {
+            *line = number;
+        }
+        self
+    }
+
     /// The error as a warning.
     pub(crate) fn into_warning(self) -> Warning {
         Warning(*self.report)

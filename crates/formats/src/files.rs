@@ -11,6 +11,8 @@ use crate::error::{Error, ErrorKind, Warning};
 pub struct LoadOptions {
     /// Open files outside the scene's folder if the scene names them. Default: false.
     pub allow_outside: bool,
+    /// Give a scene without a camera what it lacks to be seen, and a bare mesh smooth normals. Default: true.
+    pub furnish: bool,
     /// Longest file in bytes. Default: 4 GiB.
     pub max_file_bytes: u64,
     /// Sum of the lengths of all files in bytes; a mesh counts as often as it is used. Default: 8 GiB.
@@ -25,6 +27,7 @@ impl Default for LoadOptions {
     fn default() -> Self {
         Self {
             allow_outside: false,
+            furnish: true,
             max_file_bytes: 4 << 30,
             max_total_bytes: 8 << 30,
             max_pixels: 1 << 27,

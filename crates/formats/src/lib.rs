@@ -9,6 +9,7 @@
 //! | `.obj` | mesh with materials (Wavefront OBJ and MTL) | [`load`] |
 //! | `.ply` | mesh | [`load`] |
 //! | `.png` | picture | [`png::encode`] (writes only) |
+//! | `.csv`, `.npy`, `.f32`, `.f32x8` | rays and hits | [`rays::RayReader`], [`rays::HitFormat`] |
 //!
 //! # Invariants
 //! * Every file is untrusted: whatever its bytes, the answer is a scene or an [`Error`], in time and memory bounded by
@@ -28,6 +29,7 @@ mod obj;
 mod ply;
 pub mod png;
 mod polygon;
+pub mod rays;
 mod scene;
 mod smooth;
 mod source;
@@ -97,7 +99,8 @@ impl Format {
 }
 
 /// Load the scene or mesh in the file `path`; its extension tells the format. A scene without a camera gets what it lacks
-/// to be seen: [`Scene::furnish`]; a bare mesh without normals is shaded smoothly, but for its creases.
+/// to be seen: [`Scene::furnish`]; a bare mesh without normals is shaded smoothly, but for its creases. Neither if
+/// [`LoadOptions::furnish`] is unset.
 ///
 /// # Errors
 /// If the file cannot be read, is wrong, uses what is not supported, or exceeds a limit of `options`.
@@ -129,13 +132,13 @@ fn read(format: Format, file: &Path, bytes: Vec<u8>, mut context: Context<'_>) -
         Format::Obj | Format::Ply => {
             let MeshFile { mut mesh, materials } = read_mesh(format, file, bytes, &mut context)?;
             mesh.name = file.to_string_lossy().into_owned();
-            if mesh.normals.is_empty() {
+            if context.options.furnish && mesh.normals.is_empty() {
                 smooth::smooth(&mut mesh);
             }
             Scene { meshes: vec![mesh], materials, ..Scene::default() }
         }
     };
-    if scene.cameras.is_empty() {
+    if context.options.furnish && scene.cameras.is_empty() {
         scene.furnish();
     }
     Ok(Loaded { scene, warnings: context.take_warnings(file), files: context.files })

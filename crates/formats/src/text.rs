@@ -106,6 +106,12 @@ pub(crate) fn float(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
+/// As [`float`], in single precision, rounded once.
+#[inline]
+pub(crate) fn float32(word: &[u8]) -> Option<f32> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
 /// The number `word`; an error of `source` if it is none or not finite. `what` names it in the error.
 pub(crate) fn finite(source: &Source<'_>, word: &[u8], what: &str) -> Result<f64, Error> {
     match float(word) {

@@ -31,6 +31,16 @@ pub struct RaySceneBuilder {
     error: Option<RaySceneError>,
 }
 
+impl RayScene {
+    /// A scene of any primitives, all of them geometry 0; planes and other shapes included.
+    pub fn from_primitives(primitives: Primitives, options: &BuildOptions) -> Self {
+        let vertices = 0..primitives.vertices().len();
+        let part = Part { geometry: 0, start: 0, is_mesh: true, items: vertices, mask: u32::MAX };
+        let tree = Tree::build(&primitives, options);
+        Self { primitives, tree, options: *options, parts: vec![part], level: simd::Level::best() }
+    }
+}
+
 impl RaySceneBuilder {
     /// Nothing yet.
     pub fn new() -> Self {

@@ -28,9 +28,7 @@ impl Geometry {
     /// A mesh with impossible indices or attributes, or more primitives than can be numbered. Primitives that are
     /// degenerate or not finite are no error: they are never hit, and [`dropped`](Self::dropped) counts them.
     pub(super) fn new(scene: &Scene, options: &BuildOptions) -> Result<Self, SceneError> {
-        let (lo, hi) = bounds(scene);
-        let space = Space::around(lo, hi);
-        let primitives = primitives(scene, &space)?;
+        let (primitives, space) = scene.primitives()?;
         let dropped = (0..primitives.bounded_count() as u32).filter(|&id| primitives.primitive_bounds(id).is_none());
         let dropped = dropped.count();
         let mesh_ends = scene.meshes.iter().scan(0, |end, mesh| {
@@ -84,6 +82,16 @@ impl Scene {
     pub fn primitive_count(&self) -> usize {
         let triangles: usize = self.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
         triangles + self.spheres.len() + self.shapes.len() + self.planes.len()
+    }
+
+    /// The shapes alone, in internal space, and the map to it: for queries about a scene that nobody renders.
+    ///
+    /// # Errors
+    /// A mesh with impossible indices or attributes, or more primitives than can be numbered.
+    pub fn primitives(&self) -> Result<(Primitives, Space), SceneError> {
+        let (lo, hi) = bounds(self);
+        let space = Space::around(lo, hi);
+        Ok((primitives(self, &space)?, space))
     }
 }
 
