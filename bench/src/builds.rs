@@ -3,7 +3,8 @@
 //! A rate is primitives per second: of CPU time of the whole process with one thread, and of the wall clock with one
 //! and two. All builders run in turn, and the median of rounds counts. Embree's bytes are what its allocator holds for
 //! the scene, without the caller's arrays handed to it. Tests and steps are those of our walk for the same diffuse and
-//! random rays in each of our trees.
+//! random rays in each of our trees. Cost is the expected cost of a tree as a share of that of the exact sweep: object splits
+//! only, every border between two centres tried.
 
 use crate::contest::{Contestant, median, thread_seconds};
 use crate::embree::{Device, Embree, Quality};
@@ -20,7 +21,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 use whitted::geometry::Primitives;
 use whitted::ray::HitBatch;
-use whitted::tree::{Query, Scratch, Tree, TreeReport};
+use whitted::tree::{BuildOptions, Query, Scratch, Tree, TreeKind, TreeReport};
 
 /// Options of `build`.
 #[derive(Args, Clone, Debug)]
@@ -68,6 +69,8 @@ struct Builder<'a> {
 /// A tree of ours and what walking it costs, per ray.
 struct Walked {
     report: TreeReport,
+    /// Expected cost of a ray, of that in the tree by the exact sweep.
+    cost: f64,
     tests: f64,
     steps: f64,
     mrays: f64,
@@ -81,7 +84,7 @@ pub(crate) fn run(options: &Options) -> Result<Value, Box<dyn Error>> {
     let embree = options.embree.load()?;
     println!("{} · {} · commit {}", machine::date(), machine::cpu(), machine::commit());
     println!(
-        "{:<12} {:>9} {:<14} {:>9} {:>8} {:>8} {:>7} {:>6} {:>5} {:>9} {:>9} {:>7}",
+        "{:<12} {:>9} {:<14} {:>9} {:>8} {:>8} {:>7} {:>6} {:>5} {:>6} {:>9} {:>9} {:>7}",
         "scene",
         "primitives",
         "build",
@@ -91,6 +94,7 @@ pub(crate) fn run(options: &Options) -> Result<Value, Box<dyn Error>> {
         "B/prim",
         "refs",
         "depth",
+        "cost",
         "tests/ray",
         "steps/ray",
         "Mrays/s"
@@ -168,14 +172,16 @@ fn embree_build(device: &Device, scene: &Scene, quality: Quality) -> Result<Buil
 
 /// Walk each kind of tree with the same rays.
 fn walk_each(options: &Options, scene: &Scene, primitives: &Primitives) -> Vec<Walked> {
+    let exact = BuildOptions { exact: true, ..TreeKind::Fast.into() };
+    let sweep_cost = Tree::build(primitives, &exact).expected_cost();
     let mut sets = Vec::new();
     let walk = |&kind: &TreeName| {
-        let tree = Tree::build(primitives, &whitted::tree::TreeKind::from(kind).into());
+        let tree = Tree::build(primitives, &TreeKind::from(kind).into());
         let query = Query { tree: &tree, primitives, level: options.ours.level(), walk: options.ours.walk.into() };
         if sets.is_empty() {
             sets = ray_sets(scene, primitives, query);
         }
-        walk_one(query, &sets)
+        walk_one(query, &sets, sweep_cost)
     };
     TreeName::value_variants().iter().map(walk).collect()
 }
@@ -196,7 +202,7 @@ fn ray_sets(scene: &Scene, primitives: &Primitives, query: Query<'_>) -> Vec<Ray
     [RayKind::Diffuse, RayKind::Random].map(thinned).into()
 }
 
-fn walk_one(query: Query<'_>, sets: &[RaySet]) -> Walked {
+fn walk_one(query: Query<'_>, sets: &[RaySet], sweep_cost: f64) -> Walked {
     const PASSES: usize = 5;
     let mut ours: Vec<Ours<'_>> =
         sets.iter().map(|set| Ours::new(query, &set.rays, usize::MAX, set.kind.is_occlusion(), "")).collect();
@@ -209,8 +215,8 @@ fn walk_one(query: Query<'_>, sets: &[RaySet]) -> Walked {
     }
     let mut pass = || thread_seconds(|| ours.iter_mut().for_each(|one| one.run()));
     let seconds = median((0..PASSES).map(|_| pass()).collect());
-    let report = query.tree.report();
-    Walked { report, tests: tests as f64 / rays, steps: steps as f64 / rays, mrays: rays / seconds / 1e6 }
+    let (report, cost) = (query.tree.report(), query.tree.expected_cost() / sweep_cost);
+    Walked { report, cost, tests: tests as f64 / rays, steps: steps as f64 / rays, mrays: rays / seconds / 1e6 }
 }
 
 /// Print one builder's line and return it as JSON; `one` and `two` are its builds with one and two threads.
@@ -222,7 +228,10 @@ fn row(scene: &Scene, name: &str, one: &[Build], two: &[Build], walked: Option<W
     let bytes = median(one.iter().map(|b| b.bytes).collect()) / count;
     let walk = walked.as_ref().map_or(String::new(), |w| {
         let references = w.report.references as f64 / count;
-        format!("{references:>6.2} {:>5} {:>9.2} {:>9.2} {:>7.2}", w.report.depth, w.tests, w.steps, w.mrays)
+        format!(
+            "{references:>6.2} {:>5} {:>6.3} {:>9.2} {:>9.2} {:>7.2}",
+            w.report.depth, w.cost, w.tests, w.steps, w.mrays
+        )
     });
     println!(
         "{:<12} {:>9} {name:<14} {cpu:>9.3} {wall:>8.3} {two_threads:>8.3} {bytes:>7.1} {walk}",
@@ -240,6 +249,7 @@ fn row(scene: &Scene, name: &str, one: &[Build], two: &[Build], walked: Option<W
         "references": walked.as_ref().map(|w| w.report.references),
         "dropped": walked.as_ref().map(|w| w.report.dropped),
         "depth": walked.as_ref().map(|w| w.report.depth),
+        "cost_of_exact_sweep": walked.as_ref().map(|w| w.cost),
         "tests_per_ray": walked.as_ref().map(|w| w.tests),
         "steps_per_ray": walked.as_ref().map(|w| w.steps),
         "mrays": walked.as_ref().map(|w| w.mrays),

@@ -83,9 +83,73 @@ fn geometric_chain(n: u32) -> Primitives {
     }))
 }
 
+/// Points on one line, and so every triangle.
+fn collinear(n: u32) -> Primitives {
+    let mut rng = SplitMix64::new(9);
+    let mut at = || Vec3::new(1.0, 2.0, -3.0) * rng.uniform(-1.0, 1.0) as f32;
+    triangles((0..n).map(|_| [at(), at(), at()]))
+}
+
+/// Needles a million times longer than wide, in all directions.
+fn needles(n: u32) -> Primitives {
+    let mut rng = SplitMix64::new(10);
+    triangles((0..n).map(|_| {
+        let [a, b] = [common::point(&mut rng, 1.0), common::point(&mut rng, 1.0)];
+        [a, b, b + Vec3::new(0.0, 1e-6, 1e-6)]
+    }))
+}
+
+/// Triangles of all sizes and directions around the same point.
+fn one_center(n: u32) -> Primitives {
+    let mut rng = SplitMix64::new(11);
+    triangles((0..n).map(|_| {
+        let p = common::point(&mut rng, 1.0);
+        [p, -p, Vec3::new(p.y, p.z, p.x) * 0.25]
+    }))
+}
+
+/// Every other corner is not a number or infinite.
+fn broken_corners(n: u32) -> Primitives {
+    let mut rng = SplitMix64::new(12);
+    triangles((0..n).map(|i| {
+        let p = common::point(&mut rng, 1.0);
+        let q = match i % 4 {
+            0 => Vec3::new(f32::NAN, 0.0, 0.0),
+            1 => Vec3::new(0.0, f32::INFINITY, 0.0),
+            _ => p + Vec3::new(0.1, 0.0, 0.05),
+        };
+        [p, q, p + Vec3::new(0.0, 0.1, 0.0)]
+    }))
+}
+
+/// Coordinates near the smallest and the largest that there are.
+fn extreme_coordinates(n: u32) -> Primitives {
+    let mut rng = SplitMix64::new(13);
+    triangles((0..n).map(|i| {
+        let size = if i % 2 == 0 { 1e-40 } else { 1e37 };
+        let p = common::point(&mut rng, 1.0) * size;
+        [p, p + Vec3::new(size, 0.0, 0.0), p + Vec3::new(0.0, size, size)]
+    }))
+}
+
+#[test]
+fn a_million_equal_centers_are_built_in_bounded_time() {
+    let primitives = one_center(1_000_000);
+    for kind in [TreeKind::Fast, TreeKind::Best] {
+        let report = Tree::build(&primitives, &kind.into()).report();
+        println!("{kind:?}: {report:?}");
+        assert!(report.references <= 1_500_016 && report.depth <= 64, "{kind:?}: {report:?}");
+    }
+}
+
 #[test]
 fn builds_are_bounded_and_right() {
-    let scenes: [Case; 8] = [
+    let scenes: [Case; 13] = [
+        ("collinear", collinear),
+        ("needles", needles),
+        ("one centre", one_center),
+        ("broken corners", broken_corners),
+        ("extreme coordinates", extreme_coordinates),
         ("same triangle", same_triangle),
         ("same sphere", same_sphere),
         ("concentric spheres", concentric_spheres),

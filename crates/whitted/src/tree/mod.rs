@@ -11,6 +11,7 @@ mod all_hits;
 mod bit_set;
 mod brute_force;
 mod build;
+mod expected_cost;
 mod filter;
 mod goal;
 mod leaf;

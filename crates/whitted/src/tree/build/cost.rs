@@ -2,7 +2,6 @@
 
 use super::super::leaf::BLOCK;
 use super::{Bounds, BuildOptions};
-use simd::Simd;
 
 /// Expected cost of testing `count` primitives.
 ///
@@ -17,19 +16,24 @@ pub(super) fn leaf(options: &BuildOptions, count: usize) -> f32 {
 ///
 /// Flat between 0.5 and 2 for the speed of rays (bunny, Sponza, dragon); 3 loses 5 to 10 % on fine meshes, and less than
 /// 2 makes trees larger.
-pub(super) const WIDE_NODE: f32 = 2.0;
+pub(in crate::tree) const WIDE_NODE: f32 = 2.0;
 
 /// Cost of testing a leaf of the finished tree, in tests of a block.
 pub(super) fn blocks(count: usize) -> f32 {
     count.div_ceil(BLOCK) as f32
 }
 
-/// Expected cost of a node of half area `area` with two children, each a box and a number of references.
+/// Expected cost of a node of half area `area` with `count` references, if `sides` is what both sides cost: the sum of half
+/// area times cost as a leaf.
 #[inline(always)]
-pub(super) fn split<S: Simd>(token: S, options: &BuildOptions, area: f32, [left, right]: [(Bounds, usize); 2]) -> f32 {
-    let left_side = left.0.half_area_lanes(token) * leaf(options, left.1);
-    let right_side = right.0.half_area_lanes(token) * leaf(options, right.1);
+pub(super) fn relative(options: &BuildOptions, area: f32, sides: f32, count: usize) -> f32 {
     // In a box without area every ray that enters it enters both halves.
-    let chance = if area > 0.0 { (left_side + right_side) / area } else { leaf(options, left.1 + right.1) };
+    let chance = if area > 0.0 { sides / area } else { leaf(options, count) };
     options.traversal_cost + chance
+}
+
+/// Expected cost of a node with two children, each a box and a number of references.
+pub(super) fn split(options: &BuildOptions, bounds: Bounds, sides: [(Bounds, usize); 2]) -> f32 {
+    let side = |(bounds, count): (Bounds, usize)| bounds.half_area() * leaf(options, count);
+    relative(options, bounds.half_area(), side(sides[0]) + side(sides[1]), sides[0].1 + sides[1].1)
 }

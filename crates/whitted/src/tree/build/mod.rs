@@ -13,6 +13,7 @@ mod binary;
 mod bounds;
 mod clip;
 mod cost;
+mod exact_sweep;
 mod flatten;
 mod object_split;
 mod plan;
@@ -26,6 +27,7 @@ use super::wide::MAX_LEAF_BLOCKS;
 use crate::geometry::{Kind, Primitives};
 use binary::{BinaryNode, Content};
 pub(super) use bounds::Bounds;
+pub(super) use cost::WIDE_NODE as WIDE_NODE_COST;
 pub(super) use flatten::Flat;
 use object_split::ObjectSplit;
 use plan::Costs;
@@ -43,11 +45,13 @@ pub struct BuildOptions {
     pub traversal_cost: f32,
     /// Cost of testing a block of eight primitives, relative to `traversal_cost`; default 3.
     pub intersection_cost: f32,
+    /// Try every object split instead of some: ten times slower, to compare with; default false.
+    pub exact: bool,
 }
 
 impl Default for BuildOptions {
     fn default() -> Self {
-        Self { kind: TreeKind::Best, traversal_cost: 1.0, intersection_cost: 3.0 }
+        Self { kind: TreeKind::Best, traversal_cost: 1.0, intersection_cost: 3.0, exact: false }
     }
 }
 
@@ -224,7 +228,10 @@ impl Builder<'_> {
         }
         let leaf_cost = cost::leaf(self.options, count);
         let fits_leaf = count <= MAX_LEAF_BLOCKS * BLOCK;
-        let object = object_split::find(self.level, self.options, cell.used(), bounds);
+        let object = match self.options.exact {
+            false => object_split::find(self.level, self.options, cell.used(), bounds),
+            true => exact_sweep::find(self.options, cell.used(), bounds),
+        };
         let spatial =
             self.wants_spatial(object.as_ref(), bounds.half_area()).then(|| self.find_spatial(cell)).flatten();
         let spatial_cost = spatial.as_ref().map_or(f32::INFINITY, |s| s.cost);

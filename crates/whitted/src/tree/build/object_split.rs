@@ -29,6 +29,12 @@ pub(super) struct ObjectSplit {
 }
 
 impl ObjectSplit {
+    /// Divide at a doubled centre.
+    pub(super) fn at_center(axis: usize, border: f32, sides: [Bounds; 2], cost: f32) -> Self {
+        let overlap = sides[0].intersection(sides[1]).half_area();
+        Self { cost, overlap, sides, axis, start: 0.0, per_unit: 1.0, border }
+    }
+
     /// The very arithmetic of [`Bins::fill`]: no reference changes sides.
     #[inline(always)]
     pub(super) fn is_left(&self, reference: &Reference) -> bool {
@@ -68,12 +74,9 @@ impl Kernel for Find<'_> {
             }
         }
         let Border { cost, axis, border } = best?;
-        let area = self.bounds.half_area();
         let sides = bins.sides(axis, border, count);
-        // In a box without area every ray that enters it enters both halves.
-        let chance = if area > 0.0 { cost / area } else { cost::leaf(self.options, self.references.len()) };
         Some(ObjectSplit {
-            cost: self.options.traversal_cost + chance,
+            cost: cost::relative(self.options, self.bounds.half_area(), cost, self.references.len()),
             overlap: sides[0].intersection(sides[1]).half_area(),
             sides,
             axis,

@@ -195,22 +195,24 @@ impl<S: Simd> Bins<S> {
     #[inline(always)]
     fn sweep(&self, token: S, cell: &Find<'_>, axis: usize, planes: Planes, best: &mut Option<SpatialSplit>) {
         let (options, area, count) = (cell.builder.options, cell.bounds.half_area(), cell.references.len() as u32);
-        let mut right = [(Bounds::EMPTY, 0); BINS];
+        let mut right = [(0.0, 0); BINS];
         let (mut sum, mut number) = (Bounds::EMPTY.lanes(token), 0);
         for border in (1..BINS).rev() {
             sum = sum.min(self.bounds[border].lanes(token));
             number += self.ends[border];
-            right[border] = (Bounds::from_lanes(sum), number);
+            let side = Bounds::from_lanes(sum).half_area_lanes(token) * cost::leaf(options, number as usize);
+            right[border] = (side, number);
         }
         let (mut sum, mut number) = (Bounds::EMPTY.lanes(token), 0);
         for border in 1..BINS {
             sum = sum.min(self.bounds[border - 1].lanes(token));
             number += self.starts[border - 1];
-            let (right_bounds, right_number) = right[border];
+            let (right_side, right_number) = right[border];
             // A plane that every reference straddles gains nothing and would be chosen for ever.
             let gains = number > 0 && right_number > 0 && number < count && right_number < count;
-            let sides = [(Bounds::from_lanes(sum), number as usize), (right_bounds, right_number as usize)];
-            let cost = cost::split(token, options, area, sides);
+            let left_side = Bounds::from_lanes(sum).half_area_lanes(token) * cost::leaf(options, number as usize);
+            let sides = left_side + right_side;
+            let cost = cost::relative(options, area, sides, (number + right_number) as usize);
             if gains && best.is_none_or(|best| cost < best.cost) {
                 let added = (number + right_number - count) as usize;
                 *best = Some(SpatialSplit { cost, added, axis, planes, border });
