@@ -70,7 +70,7 @@ impl RayScene {
     pub fn occluded_into<'r>(&self, rays: impl Into<Rays<'r>>, occluded: &mut [bool]) {
         let rays = rays.into();
         assert_eq!(occluded.len(), rays.len(), "room for one answer to each ray");
-        memory::with(|Memory { scratch, occlusion }| {
+        memory::with(|Memory { scratch, occlusion, .. }| {
             for (part, occluded) in occluded.chunks_mut(GRAIN).enumerate() {
                 let rays = rays.slice(part * GRAIN..part * GRAIN + occluded.len());
                 let sees = |index: usize, primitive: u32| self.sees(rays.mask(index), primitive);

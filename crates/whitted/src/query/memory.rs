@@ -1,5 +1,6 @@
 //! Memory of the walks, one for each thread, kept from call to call.
 
+use crate::ray::HitLists;
 use crate::tree::{Occlusion, Scratch};
 use std::cell::Cell;
 
@@ -8,6 +9,7 @@ use std::cell::Cell;
 pub(super) struct Memory {
     pub scratch: Scratch,
     pub occlusion: Vec<Occlusion>,
+    pub lists: HitLists,
 }
 
 thread_local! {

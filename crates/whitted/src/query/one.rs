@@ -1,8 +1,8 @@
 //! Questions about one ray.
 
 use super::RayScene;
-use super::memory;
-use crate::ray::{Hit, HitLists, MaskedRay, Ray, Rays};
+use super::memory::{self, Memory};
+use crate::ray::{Hit, MaskedRay, Ray, Rays};
 use crate::tree::{Filter, Occlusion, WalkKind};
 
 /// Where [`RayScene::contains`] looks: no axis, no diagonal.
@@ -135,10 +135,10 @@ impl RayScene {
 
     fn with_all_hits<T>(&self, MaskedRay { ray, mask }: MaskedRay, use_hits: impl FnOnce(&[Hit]) -> T) -> T {
         let sees = |_: usize, primitive: u32| self.sees(mask, primitive);
-        memory::with(|memory| {
-            let mut lists = HitLists::new();
+        memory::with(|Memory { scratch, lists, .. }| {
+            lists.clear();
             let query = self.query(WalkKind::Single);
-            query.all_hits(&ray, self.filter(&ray, mask, &sees), &mut lists, &mut memory.scratch);
+            query.all_hits(&ray, self.filter(&ray, mask, &sees), lists, scratch);
             use_hits(lists.of(0))
         })
     }

@@ -1,5 +1,7 @@
 //! A chunk of rays in the forms that nodes and leaves want.
 
+mod one;
+
 use super::frustum::PACKET;
 use crate::geometry::sphere::SphereRay;
 use crate::geometry::{Primitives, ShearedRay};
@@ -97,7 +99,10 @@ impl PreparedRays {
             self.original.extend(range.clone().map(|index| rays.get(index)));
         }
         self.limit.resize(range.len().next_multiple_of(STEP), f32::NEG_INFINITY);
-        simd::dispatch(level, Begin { prepared: self, tree, rays, range });
+        match range.len() {
+            1 => self.begin_one(tree, &rays.get(range.start)),
+            _ => simd::dispatch(level, Begin { prepared: self, tree, rays, range }),
+        }
     }
 
     /// Number of rays.
@@ -252,6 +257,9 @@ impl PreparedRays {
     /// Make the records of packet `packet`.
     #[inline(always)]
     pub(super) fn record<S: Simd>(&mut self, token: S, from: &Records<'_>, packet: usize) {
+        if self.len == 1 {
+            return self.record_one(from);
+        }
         let scale = S::F32x16::splat(token, from.tree.scale());
         let range = self.packet(packet);
         for first in range.clone().step_by(STEP) {
