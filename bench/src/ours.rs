@@ -60,7 +60,17 @@ impl Contestant for Ours<'_> {
     }
 
     fn run(&mut self) {
-        self.count();
+        let c = self.count();
+        if std::env::var("COUNT").is_ok() {
+            let n: usize = self.batches.iter().map(|b| b.len()).sum();
+            eprintln!(
+                "{} {} rays: per 64 rays: {:.1} node steps, {:.1} tests",
+                self.note,
+                n,
+                c.node_steps as f64 / n as f64,
+                c.primitive_tests as f64 / n as f64
+            );
+        }
     }
 
     fn answers(&self) -> Vec<f32> {

@@ -1,0 +1,225 @@
+//! Sixty-four rays as rows: what they are, and their tests against primitives.
+
+use super::super::Walk;
+use super::pyramid::{Edges, Pyramid};
+use super::{LANES, PACKET, ROWS};
+use crate::geometry::sphere::{self, SphereRays};
+use crate::geometry::triangle::{self, ShearedRays, dominant_axis, renamed};
+use crate::math::Vec3;
+use crate::ray;
+use crate::tree::goal::Goal;
+use simd::{F32Lanes, MaskLanes, Simd};
+
+/// A row of one value per ray.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Row([f32; PACKET]);
+
+impl Row {
+    #[inline(always)]
+    pub(super) fn load<S: Simd>(&self, token: S, row: usize) -> S::F32x16 {
+        S::F32x16::load_slice(token, &self.0[LANES * row..])
+    }
+
+    #[inline(always)]
+    fn store<S: Simd>(&mut self, row: usize, lanes: S::F32x16) {
+        lanes.store_slice(&mut self.0[LANES * row..]);
+    }
+}
+
+/// Rays with one origin and one dominant axis.
+pub(super) struct Packet {
+    /// In the tree's scale.
+    pub(super) origin: Vec3<f32>,
+    direction: [Row; 3],
+    /// See [`ShearedRays::shear`].
+    pub(super) shear: [Row; 3],
+    t_min: Row,
+    limit: Row,
+    pub(super) axis: usize,
+    /// True if the rays run towards smaller coordinates of the dominant axis.
+    pub(super) backward: bool,
+    /// Signs of the first direction, by which children are ordered.
+    pub(super) octant: usize,
+}
+
+impl Packet {
+    /// The rays from `first` on, if they make a packet: full, one origin, one dominant axis and sense, no negative t.
+    #[inline(always)]
+    pub(super) fn new<S: Simd, G: Goal>(token: S, walk: &Walk<'_, G>, first: usize) -> Option<Self> {
+        let start = walk.start + first;
+        let rows = |row: &[f32]| Row(*row[start..].first_chunk().expect("a whole packet"));
+        let (o, d) = (walk.batch.origin, walk.batch.direction);
+        let apex = Vec3::new(o.x[start], o.y[start], o.z[start]);
+        if !(same(token, &o.x[start..], apex.x)
+            && same(token, &o.y[start..], apex.y)
+            && same(token, &o.z[start..], apex.z))
+        {
+            return None;
+        }
+        let along = Vec3::new(d.x[start], d.y[start], d.z[start]);
+        let axis = dominant_axis(along);
+        let octant = [along.x, along.y, along.z].map(|component| usize::from(component.is_sign_negative()));
+        let mut packet = Self {
+            origin: apex * walk.tree.scale(),
+            direction: [rows(d.x), rows(d.y), rows(d.z)],
+            shear: [Row([0.0; PACKET]); 3],
+            t_min: match walk.batch.t_min {
+                ray::Row::Each(t_min) => rows(t_min),
+                ray::Row::All(t_min) => Row([t_min; PACKET]),
+            },
+            limit: Row(*walk.rays.limits(first)),
+            axis,
+            backward: octant[axis] != 0,
+            octant: octant[0] | octant[1] << 1 | octant[2] << 2,
+        };
+        packet.prepare(token, walk.tree.scale()).then_some(packet)
+    }
+
+    /// Scale and shear the directions; false if a ray has another dominant axis or sense, or a range that begins before
+    /// its origin.
+    #[inline(always)]
+    fn prepare<S: Simd>(&mut self, token: S, scale: f32) -> bool {
+        let [x, y, z] = renamed(self.axis);
+        let zero = S::F32x16::splat(token, 0.0);
+        let mut sound = zero.le(zero);
+        for row in 0..ROWS {
+            let scale = S::F32x16::splat(token, scale);
+            let d = [
+                self.direction[0].load(token, row) * scale,
+                self.direction[1].load(token, row) * scale,
+                self.direction[2].load(token, row) * scale,
+            ];
+            let (dx, dy, dz) = (d[x], d[y], d[z]);
+            let ahead = if self.backward { dz.lt(zero) } else { zero.lt(dz) };
+            sound = sound & ahead & dominated(dx, dz, x < z) & dominated(dy, dz, y < z);
+            sound = sound & zero.le(self.t_min.load(token, row));
+            self.shear[0].store::<S>(row, dx / dz);
+            self.shear[1].store::<S>(row, dy / dz);
+            self.shear[2].store::<S>(row, S::F32x16::splat(token, 1.0) / dz);
+            self.direction[0].store::<S>(row, d[0]);
+            self.direction[1].store::<S>(row, d[1]);
+            self.direction[2].store::<S>(row, d[2]);
+        }
+        sound.all()
+    }
+
+    /// The greatest distance along the dominant axis at which a ray may still hit.
+    #[inline(always)]
+    pub(super) fn reach<S: Simd>(&self, token: S) -> f32 {
+        let mut reach = S::F32x16::splat(token, f32::NEG_INFINITY);
+        for row in 0..ROWS {
+            let distance = self.limit.load(token, row) * self.direction[self.axis].load(token, row).abs();
+            reach = distance.max(reach);
+        }
+        // One rounding of the product: the next but one number up is no less than the exact one.
+        let reach = reach.reduce_max();
+        if reach < f32::INFINITY { reach.next_up().next_up() } else { reach }
+    }
+
+    /// Write the rays' limits back.
+    #[inline(always)]
+    pub(super) fn finish<G: Goal>(&self, walk: &mut Walk<'_, G>, first: usize) {
+        *walk.rays.limits_mut(first) = self.limit.0;
+    }
+
+    /// Test the triangles of a block that the pyramid touches; returns how many.
+    #[inline(always)]
+    pub(super) fn triangles<S: Simd, G: Goal>(
+        &mut self,
+        token: S,
+        pyramid: &Pyramid,
+        walk: &mut Walk<'_, G>,
+        first: usize,
+        block: usize,
+    ) -> u32 {
+        let block = &walk.tree.leaves.triangles[block];
+        let mut edges = Edges::default();
+        let mut survivors = pyramid.touches_triangles(token, block, &mut edges);
+        let count = survivors.count_ones();
+        let [x, y, z] = pyramid.axes;
+        let origin = crate::geometry::splat(token, [self.origin[x], self.origin[y], self.origin[z]]);
+        while survivors != 0 {
+            let lane = survivors.trailing_zeros() as usize % 8;
+            survivors &= survivors - 1;
+            let planes = edges.planes(token, lane);
+            let vertices = [
+                crate::geometry::splat(token, block.corner(0, lane, pyramid.axes)),
+                crate::geometry::splat(token, block.corner(1, lane, pyramid.axes)),
+                crate::geometry::splat(token, block.corner(2, lane, pyramid.axes)),
+            ];
+            for row in 0..ROWS {
+                let [x, y] = [self.shear[0].load(token, row), self.shear[1].load(token, row)];
+                if planes.exclude(x, y).all() {
+                    continue;
+                }
+                let rays = ShearedRays { origin, shear: [x, y, self.shear[2].load(token, row)] };
+                let limit = self.limit.load(token, row);
+                let (hit, t) = triangle::intersect(token, &rays, vertices, self.t_min.load(token, row), limit);
+                if hit.any() {
+                    let limit = walk.goal.offer_row(token, first + LANES * row, hit, t, block.primitive(lane), limit);
+                    self.limit.store::<S>(row, limit);
+                }
+            }
+        }
+        count
+    }
+
+    /// Test the spheres of a block that the pyramid touches; returns how many.
+    #[inline(always)]
+    pub(super) fn spheres<S: Simd, G: Goal>(
+        &mut self,
+        token: S,
+        pyramid: &Pyramid,
+        walk: &mut Walk<'_, G>,
+        first: usize,
+        block: usize,
+    ) -> u32 {
+        let block = &walk.tree.leaves.spheres[block];
+        let mut survivors = pyramid.touches_spheres(token, block);
+        let count = survivors.count_ones();
+        let origin = crate::geometry::splat(token, self.origin.to_array());
+        let one = S::F32x16::splat(token, 1.0);
+        while survivors != 0 {
+            let lane = survivors.trailing_zeros() as usize % 8;
+            survivors &= survivors - 1;
+            let center = crate::geometry::splat(token, block.center(lane));
+            let radius_squared = S::F32x16::splat(token, block.radius_squared(lane));
+            for row in 0..ROWS {
+                let direction = [
+                    self.direction[0].load(token, row),
+                    self.direction[1].load(token, row),
+                    self.direction[2].load(token, row),
+                ];
+                let inverse_length_squared = one / Vec3::from(direction).length_squared();
+                let rays = SphereRays { origin, direction, inverse_length_squared };
+                let (t_min, mut limit) = (self.t_min.load(token, row), self.limit.load(token, row));
+                let roots = sphere::roots(&rays, center, radius_squared);
+                let (hit, t) = sphere::first_in_range(roots, t_min, limit);
+                if hit.any() {
+                    let id = block.primitive(lane);
+                    limit = walk.goal.offer_row(token, first + LANES * row, hit, t, id, limit);
+                    self.limit.store::<S>(row, limit);
+                }
+            }
+        }
+        count
+    }
+}
+
+/// True where `component` does not take the place of `dominant` as the dominant one; of two equals the first does.
+#[inline(always)]
+fn dominated<F: F32Lanes>(component: F, dominant: F, is_first: bool) -> F::Mask {
+    if is_first { component.abs().lt(dominant.abs()) } else { component.abs().le(dominant.abs()) }
+}
+
+/// True if the first [`PACKET`] values of a row equal `value`.
+#[inline(always)]
+fn same<S: Simd>(token: S, row: &[f32], value: f32) -> bool {
+    let value = S::F32x16::splat(token, value);
+    let mut equal = value.eq(value);
+    for start in (0..PACKET).step_by(LANES) {
+        equal = equal & S::F32x16::load_slice(token, &row[start..]).eq(value);
+    }
+    equal.all()
+}
