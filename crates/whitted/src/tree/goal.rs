@@ -8,6 +8,8 @@ use simd::{F32Lanes, MaskLanes, U32Lanes};
 pub(crate) trait Goal {
     /// True if every crossing of a surface must be offered, false if the first one in the ray's range will do.
     const EVERY_CROSSING: bool = false;
+    /// True if one candidate may end a ray, so that it pays to ask whether rays have ended.
+    const ENDS_RAYS: bool = false;
 
     /// A primitive is hit at `t`, within the ray's range, `limit` being its upper end so far. Returns the new limit if
     /// the range shrinks; negative infinity ends the ray.
@@ -132,6 +134,8 @@ pub(crate) struct Any<'a> {
 }
 
 impl Goal for Any<'_> {
+    const ENDS_RAYS: bool = true;
+
     #[inline(always)]
     fn offer(&mut self, ray: usize, _: f32, primitive: u32, _: f32) -> Option<f32> {
         if self.opaque.is_none_or(|set| set.contains(primitive)) {

@@ -139,6 +139,7 @@ impl Packet {
         let count = survivors.count_ones();
         let [x, y, z] = pyramid.axes;
         let origin = crate::geometry::splat(token, [self.origin[x], self.origin[y], self.origin[z]]);
+        let zero = S::F32x16::splat(token, 0.0);
         while survivors != 0 {
             let lane = survivors.trailing_zeros() as usize % 8;
             survivors &= survivors - 1;
@@ -150,11 +151,15 @@ impl Packet {
             ];
             for row in 0..ROWS {
                 let [x, y] = [self.shear[0].load(token, row), self.shear[1].load(token, row)];
-                if planes.exclude(x, y).all() {
+                let limit = self.limit.load(token, row);
+                let mut excluded = planes.exclude(x, y);
+                if G::ENDS_RAYS {
+                    excluded = excluded | limit.lt(zero);
+                }
+                if excluded.all() {
                     continue;
                 }
                 let rays = ShearedRays { origin, shear: [x, y, self.shear[2].load(token, row)] };
-                let limit = self.limit.load(token, row);
                 let (hit, t) = triangle::intersect(token, &rays, vertices, self.t_min.load(token, row), limit);
                 if hit.any() {
                     let limit = walk.goal.offer_row(token, first + LANES * row, hit, t, block.primitive(lane), limit);
