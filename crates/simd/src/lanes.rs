@@ -31,6 +31,16 @@ pub trait Simd: Copy + Send + Sync + Debug + 'static {
         Self::F32x4::load(self, &[y, z, x, w])
     }
 
+    /// Sixteen small integers as floats.
+    #[inline(always)]
+    fn bytes(self, from: &[u8; 16]) -> Self::F32x16 {
+        let mut lanes = [0.0; 16];
+        for (lane, &byte) in lanes.iter_mut().zip(from) {
+            *lane = f32::from(byte);
+        }
+        Self::F32x16::load(self, &lanes)
+    }
+
     /// The columns of eight rows: element `j` of row `i` becomes element `i` of column `j`. Bits are kept.
     #[inline(always)]
     fn transpose(self, rows: [Self::F32x8; 8]) -> [Self::F32x8; 8] {

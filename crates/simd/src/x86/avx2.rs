@@ -25,6 +25,16 @@ impl Simd for Avx2 {
         v.yzx()
     }
     #[inline(always)]
+    fn bytes(self, from: &[u8; 16]) -> Pair<F32x8> {
+        // SAFETY: the token exists; the array is as long as the register that is read.
+        let (low, high) = unsafe {
+            let all = _mm_loadu_si128(from.as_ptr().cast());
+            let high = _mm_srli_si128::<8>(all);
+            (_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(all)), _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(high)))
+        };
+        Pair(F32x8::wrap(low, self), F32x8::wrap(high, self))
+    }
+    #[inline(always)]
     fn transpose(self, rows: [F32x8; 8]) -> [F32x8; 8] {
         let [a, b, c, d, e, f, g, h] = rows;
         // SAFETY: the token exists, so the CPU has its features.

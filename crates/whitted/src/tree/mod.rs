@@ -15,6 +15,7 @@ mod expected_cost;
 mod filter;
 mod goal;
 mod leaf;
+mod node;
 mod query;
 mod refit;
 mod validate;

@@ -1,6 +1,7 @@
 //! Fitting a tree to primitives that have moved: the same nodes, new boxes.
 
-use super::wide::{Child, ChildKind, Node, Tree, WIDTH};
+use super::node::{Child, ChildKind, Node, WIDTH};
+use super::wide::Tree;
 use super::{BitSet, TreeKind};
 use crate::geometry::Primitives;
 use crate::math::Aabb;
@@ -91,23 +92,22 @@ impl Tree {
         }
         let mut bounds = vec![Aabb::EMPTY; self.nodes.len()];
         for &index in order.iter().rev() {
-            let mut node = self.nodes[index];
-            for lane in 0..WIDTH {
-                let child = node.child(lane);
+            let node = &self.nodes[index];
+            let children = node.children().map(Child);
+            let mut boxes = [Aabb::EMPTY; WIDTH];
+            for (fitted, child) in boxes.iter_mut().zip(children) {
                 if child == Child::UNUSED {
                     continue;
                 }
-                let fitted = match child.decode() {
+                *fitted = match child.decode() {
                     ChildKind::Interior(child) => bounds[child],
                     ChildKind::Leaf { kind, first, count } => {
                         self.leaf_bounds(primitives, self.leaves.primitives(kind, first, count))
                     }
                 };
-                node.set(lane, fitted, child);
-                bounds[index] = bounds[index].union(fitted);
+                bounds[index] = bounds[index].union(*fitted);
             }
-            node.sort();
-            self.nodes[index] = node;
+            self.nodes[index] = Node::new(&boxes, &children);
         }
     }
 

@@ -1,14 +1,12 @@
-//! The production tree: nodes of 16 children with tight boxes.
+//! The production tree: wide nodes over leaf blocks.
 
 use super::build::{self, BuildOptions};
 use super::leaf::{LeafKind, Leaves};
+use super::node::{Child, ChildKind, Node};
 use super::{TreeKind, validate};
 use crate::geometry::Primitives;
 use crate::math::Aabb;
 use simd::F32Lanes;
-
-/// Children of a node.
-pub(super) const WIDTH: usize = 16;
 
 /// Boxes grow by this times the largest coordinate of the scene.
 ///
@@ -23,128 +21,6 @@ const ERROR: f32 = 32.0 / (1 << 24) as f32;
 
 /// [`ERROR`], and the rounding of slopes and plane distances: eight operations of half an ulp on either side.
 const PACKET_ERROR: f32 = 40.0 / (1 << 24) as f32;
-
-/// A node: the boxes of 16 children as rows, nine cache lines.
-///
-/// The first six lines and the children are read by every step, one row of `order` by steps that sort.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(super) struct Node {
-    /// Lower x, y, z, then upper x, y, z. Unused lanes are the empty box: lower planes at +∞, upper ones at −∞, which
-    /// no ray enters since reciprocals are neither 0 nor infinite.
-    pub planes: [[f32; WIDTH]; 6],
-    /// What the boxes hold.
-    child: [u32; WIDTH],
-    /// For each octant of ray directions (bit a set: component a negative) the lanes from far to near.
-    pub order: [[u8; WIDTH]; 8],
-}
-
-const _: () = assert!(size_of::<Node>() == 576 && align_of::<Node>() == 64, "nine whole cache lines");
-
-/// An interior node or a run of leaf blocks, in 32 bits.
-///
-/// Interior: the node's index, below 2³¹. Leaf: bit 31, kind in bits 29–30, blocks less one in bits 25–28, first block
-/// in bits 0–24.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(transparent)]
-pub(super) struct Child(pub u32);
-
-/// What a [`Child`] stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ChildKind {
-    Interior(usize),
-    Leaf { kind: LeafKind, first: usize, count: usize },
-}
-
-/// Most blocks that one leaf can hold; larger ones become several.
-pub(super) const MAX_LEAF_BLOCKS: usize = 16;
-const MAX_BLOCK: usize = 1 << 25;
-
-impl Child {
-    /// What a lane without a box holds.
-    pub(super) const UNUSED: Self = Self(u32::MAX);
-
-    pub(super) const fn interior(index: usize) -> Self {
-        assert!(index < 1 << 31, "node index fits 31 bits");
-        Self(index as u32)
-    }
-
-    pub(super) fn leaf(kind: LeafKind, first: usize, count: usize) -> Self {
-        assert!(first < MAX_BLOCK && (1..=MAX_LEAF_BLOCKS).contains(&count), "leaf fits its fields");
-        Self(1 << 31 | (kind as u32) << 29 | (count as u32 - 1) << 25 | first as u32)
-    }
-
-    #[inline(always)]
-    pub(super) fn decode(self) -> ChildKind {
-        if self.0 >> 31 == 0 {
-            return ChildKind::Interior(self.0 as usize);
-        }
-        let kind = match self.0 >> 29 & 3 {
-            0 => LeafKind::Triangles,
-            1 => LeafKind::Spheres,
-            _ => LeafKind::Shapes,
-        };
-        let count = (self.0 >> 25 & 15) as usize + 1;
-        ChildKind::Leaf { kind, first: self.0 as usize & (MAX_BLOCK - 1), count }
-    }
-}
-
-impl Node {
-    /// No children.
-    pub(super) const EMPTY: Self = Self {
-        planes: [
-            [f32::INFINITY; WIDTH],
-            [f32::INFINITY; WIDTH],
-            [f32::INFINITY; WIDTH],
-            [f32::NEG_INFINITY; WIDTH],
-            [f32::NEG_INFINITY; WIDTH],
-            [f32::NEG_INFINITY; WIDTH],
-        ],
-        child: [Child::UNUSED.0; WIDTH],
-        order: [[0; WIDTH]; 8],
-    };
-
-    pub(super) fn set(&mut self, lane: usize, bounds: Aabb, child: Child) {
-        for axis in 0..3 {
-            self.planes[axis][lane] = bounds.lo[axis];
-            self.planes[3 + axis][lane] = bounds.hi[axis];
-        }
-        self.child[lane] = child.0;
-    }
-
-    /// The children as bits.
-    #[inline(always)]
-    pub(super) fn children(&self) -> &[u32; WIDTH] {
-        &self.child
-    }
-
-    /// What the box of a lane holds.
-    #[inline(always)]
-    pub(super) fn child(&self, lane: usize) -> Child {
-        Child(self.child[lane])
-    }
-
-    /// The box of a lane as stored, padding included.
-    pub(super) fn bounds(&self, lane: usize) -> Aabb {
-        let corner = |first: usize| [0, 1, 2].map(|axis| self.planes[first + axis][lane]).into();
-        Aabb::new(corner(0), corner(3))
-    }
-
-    /// Sort the lanes by the distance of their centres along each octant's diagonal, far to near, unused lanes last.
-    pub(super) fn sort(&mut self) {
-        for octant in 0..8 {
-            let key = |lane: usize| -> f32 {
-                let center = self.bounds(lane).center();
-                (0..3).map(|axis| if octant >> axis & 1 == 0 { center[axis] } else { -center[axis] }).sum()
-            };
-            let mut lanes: [u8; WIDTH] = std::array::from_fn(|lane| lane as u8);
-            // The centre of the empty box is NaN: it counts as the nearest.
-            let far_first = |lane: u8| Some(key(lane.into())).filter(|k| !k.is_nan()).unwrap_or(f32::NEG_INFINITY);
-            lanes.sort_by(|&a, &b| far_first(b).total_cmp(&far_first(a)));
-            self.order[octant] = lanes;
-        }
-    }
-}
 
 /// The tree over a scene's bounded primitives, with its own copy of their coordinates.
 ///

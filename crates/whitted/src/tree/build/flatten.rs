@@ -7,8 +7,10 @@
 use super::binary::{BinaryNode, Content, Subtree};
 use super::reference::Reference;
 use crate::geometry::Primitives;
+use crate::math::Aabb;
 use crate::tree::leaf::{BLOCK, LeafKind, Leaves, ShapeBlock, SphereBlock, TriangleBlock};
-use crate::tree::wide::{Child, Node, TreeReport, WIDTH};
+use crate::tree::node::{Child, Node, WIDTH};
+use crate::tree::wide::TreeReport;
 use rayon::prelude::*;
 use std::ops::AddAssign;
 
@@ -23,10 +25,8 @@ pub(in crate::tree) struct Flat {
 impl Flat {
     /// Nothing but a root without children.
     pub(super) fn empty(dropped: usize) -> Self {
-        let mut node = Node::EMPTY;
-        node.sort();
         let report = TreeReport { nodes: 1, depth: 1, dropped, ..TreeReport::default() };
-        Self { nodes: vec![node], leaves: Leaves::default(), report }
+        Self { nodes: vec![Node::EMPTY], leaves: Leaves::default(), report }
     }
 }
 
@@ -284,10 +284,10 @@ impl Source<'_> {
         let interiors: Vec<Subtree> = lanes.interiors().collect();
         let Run { items: slots, first } = room.nodes.take(interiors.len());
         let mut next = first;
-        let mut node = Node::EMPTY;
+        let (mut boxes, mut children) = ([Aabb::EMPTY; WIDTH], [Child::UNUSED; WIDTH]);
         for (lane, Lane { subtree, leaf }) in lanes.iter().enumerate() {
-            let bounds = self.nodes[subtree.index].bounds.grown(self.padding);
-            let child = match leaf {
+            boxes[lane] = self.nodes[subtree.index].bounds.grown(self.padding);
+            children[lane] = match leaf {
                 Some(kind) => {
                     self.primitives_of(subtree, ids);
                     self.write_leaf(kind, ids, room)
@@ -297,10 +297,8 @@ impl Source<'_> {
                     Child::interior(next - 1)
                 }
             };
-            node.set(lane, bounds, child);
         }
-        node.sort();
-        *slot = node;
+        *slot = Node::new(&boxes, &children);
         (interiors, slots)
     }
 

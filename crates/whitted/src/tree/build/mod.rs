@@ -23,7 +23,7 @@ mod spatial_split;
 
 use super::TreeKind;
 use super::leaf::{BLOCK, LeafKind};
-use super::wide::MAX_LEAF_BLOCKS;
+use super::node::MAX_LEAF_BLOCKS;
 use crate::geometry::{Kind, Primitives};
 use binary::{BinaryNode, Content};
 pub(super) use bounds::Bounds;

@@ -6,7 +6,7 @@
 //! Compressed Wide BVHs", HPG 2017, §3.1, for 16 children instead of 8).
 
 use super::cost;
-use crate::tree::wide::WIDTH;
+use crate::tree::node::WIDTH;
 use simd::{F32Lanes, Kernel, Level, Simd};
 
 /// `[i]`: the expected cost of a subtree as at most `i + 1` children, times the half area of the root.

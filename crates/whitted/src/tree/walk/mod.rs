@@ -49,7 +49,7 @@ impl<G: Goal> Kernel for Walk<'_, G> {
             WalkKind::Single => {
                 let mut stack = std::mem::take(&mut self.lists.stack);
                 for index in 0..self.rays.len() {
-                    single::walk(token, &mut self, &mut stack, index, super::wide::Child::interior(0), &mut counts);
+                    single::walk(token, &mut self, &mut stack, index, super::node::Child::interior(0), &mut counts);
                 }
                 self.lists.stack = stack;
             }

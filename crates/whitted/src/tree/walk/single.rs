@@ -3,8 +3,8 @@
 use super::Walk;
 use super::slabs::Slabs;
 use crate::tree::goal::Goal;
+use crate::tree::node::{Child, ChildKind, WIDTH};
 use crate::tree::query::Counts;
-use crate::tree::wide::{Child, ChildKind, WIDTH};
 use simd::Simd;
 
 /// Children that wait to be visited, nearest last, with the parameter where the ray enters them.
@@ -119,7 +119,7 @@ impl Path {
                 let (mask, entry) = Slabs::load(token, node, octant).enter(token, ray, walk.rays.far(self.index));
                 let keys = (&mut stack.entry[top..top + WIDTH]).try_into().expect("WIDTH entries");
                 let values = (&mut stack.child[top..top + WIDTH]).try_into().expect("WIDTH children");
-                self.top += token.compress_in_order(mask, &node.order[octant], entry, node.children(), keys, values);
+                self.top += token.compress_in_order(mask, &node.order(octant), entry, node.children(), keys, values);
             }
             ChildKind::Leaf { kind, first, count } => walk.leaf(token, self.index, kind, first, count, counts),
         }

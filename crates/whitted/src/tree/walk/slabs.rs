@@ -1,13 +1,14 @@
 //! The box test: one ray against the sixteen boxes of a node.
 
 use super::prepared::NodeRay;
-use crate::tree::wide::Node;
+use crate::tree::node::Node;
 use simd::{F32Lanes, MaskLanes, Simd};
 
 /// The planes of a node as rays of one octant meet them: three where they enter a box, three where they leave it.
 pub(super) struct Slabs<S: Simd> {
     near: [S::F32x16; 3],
     far: [S::F32x16; 3],
+    boxes: u16,
 }
 
 impl<S: Simd> Slabs<S> {
@@ -15,9 +16,11 @@ impl<S: Simd> Slabs<S> {
     #[inline(always)]
     pub(super) fn load(token: S, node: &Node, octant: usize) -> Self {
         let [x, y, z] = [octant & 1, octant >> 1 & 1, octant >> 2 & 1];
-        let near = [&node.planes[3 * x], &node.planes[1 + 3 * y], &node.planes[2 + 3 * z]];
-        let far = [&node.planes[3 - 3 * x], &node.planes[4 - 3 * y], &node.planes[5 - 3 * z]];
-        Self { near: load(token, near), far: load(token, far) }
+        Self {
+            near: [node.planes(token, 3 * x), node.planes(token, 1 + 3 * y), node.planes(token, 2 + 3 * z)],
+            far: [node.planes(token, 3 - 3 * x), node.planes(token, 4 - 3 * y), node.planes(token, 5 - 3 * z)],
+            boxes: node.boxes(),
+        }
     }
 
     /// The boxes that the ray enters within its range, and where it enters them.
@@ -33,13 +36,8 @@ impl<S: Simd> Slabs<S> {
         let entry = x.max(y).max(z.max(t_min));
         let [x, y, z] = met(self.far, inverse, far);
         let exit = x.min(y).min(z.min(limit));
-        (entry.le(exit).bits() as u16, entry)
+        (entry.le(exit).bits() as u16 & self.boxes, entry)
     }
-}
-
-#[inline(always)]
-fn load<S: Simd>(token: S, [x, y, z]: [&[f32; 16]; 3]) -> [S::F32x16; 3] {
-    [S::F32x16::load(token, x), S::F32x16::load(token, y), S::F32x16::load(token, z)]
 }
 
 /// Where a ray meets planes: `plane·inverse + offset`.

@@ -12,8 +12,8 @@ use super::single::{self, Stack};
 use super::slabs::Slabs;
 use super::{PreparedRays, Walk};
 use crate::tree::goal::Goal;
+use crate::tree::node::{Child, ChildKind, Node, WIDTH};
 use crate::tree::query::{CHUNK, Counts};
-use crate::tree::wide::{Child, ChildKind, Node, WIDTH};
 use simd::Simd;
 
 /// Lists shorter than this are walked ray by ray, in turns: a node costs more to load than it saves.
@@ -130,7 +130,7 @@ fn enter<S: Simd, const SLACK: bool>(
 /// Push a list for each child in `any`, the nearest last; return the new top of the ray numbers.
 #[inline(always)]
 fn distribute<S: Simd>(token: S, node: &Node, octant: usize, any: u16, lists: &mut Lists, mut top: usize) -> usize {
-    for lane in node.order[octant] {
+    for lane in node.order(octant) {
         let bit = 1u16 << (lane & 15);
         if any & bit == 0 {
             continue;

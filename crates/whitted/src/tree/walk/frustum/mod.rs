@@ -17,8 +17,8 @@ use super::Walk;
 use super::single::Stack;
 use crate::tree::goal::Goal;
 use crate::tree::leaf::LeafKind;
+use crate::tree::node::{Child, ChildKind, WIDTH};
 use crate::tree::query::Counts;
-use crate::tree::wide::{Child, ChildKind, WIDTH};
 use packet::Packet;
 use pyramid::Pyramid;
 use simd::Simd;
@@ -60,7 +60,7 @@ pub(super) fn walk<S: Simd, G: Goal>(
                 let (mask, entry) = pyramid.enter(token, node);
                 let keys = (&mut stack.entry[top..top + WIDTH]).try_into().expect("WIDTH entries");
                 let values = (&mut stack.child[top..top + WIDTH]).try_into().expect("WIDTH children");
-                top += token.compress_in_order(mask, &node.order[octant], entry, node.children(), keys, values);
+                top += token.compress_in_order(mask, &node.order(octant), entry, node.children(), keys, values);
             }
             ChildKind::Leaf { kind: LeafKind::Shapes, .. } => {
                 packet.finish(walk, first);

@@ -6,7 +6,7 @@ use super::packet::{Packet, Row};
 use crate::geometry::triangle::renamed;
 use crate::tree::goal::Goal;
 use crate::tree::leaf::{SphereBlock, TriangleBlock};
-use crate::tree::wide::Node;
+use crate::tree::node::Node;
 use simd::{F32Lanes, MaskLanes, Simd, U32Lanes};
 
 /// The pyramid around a packet, in renamed axes: planes `x − slope·z = offset`, the apex being the origin.
@@ -46,8 +46,7 @@ impl Pyramid {
     #[inline(always)]
     pub(super) fn enter<S: Simd>(&self, token: S, node: &Node) -> (u16, S::F32x16) {
         let [x, y, z] = self.axes;
-        let load = |row: usize| S::F32x16::load(token, &node.planes[row]);
-        let (lo_z, hi_z) = (load(z), load(3 + z));
+        let (lo_z, hi_z) = (node.planes(token, z), node.planes(token, 3 + z));
         let apex_z = S::F32x16::splat(token, self.apex[2]);
         // Distances along the axis at which a box begins and ends.
         let (begin, end) = if self.backward { (apex_z - hi_z, apex_z - lo_z) } else { (lo_z - apex_z, hi_z - apex_z) };
@@ -55,9 +54,9 @@ impl Pyramid {
         let begin = begin - slack;
         let end = end + slack;
         let mut touched = S::F32x16::splat(token, 0.0).le(end) & begin.le(S::F32x16::splat(token, self.reach));
-        touched = touched & self.beside(token, 0, load(x), load(3 + x), begin, end, slack);
-        touched = touched & self.beside(token, 1, load(y), load(3 + y), begin, end, slack);
-        (touched.bits() as u16, begin)
+        touched = touched & self.beside(token, 0, node.planes(token, x), node.planes(token, 3 + x), begin, end, slack);
+        touched = touched & self.beside(token, 1, node.planes(token, y), node.planes(token, 3 + y), begin, end, slack);
+        (touched.bits() as u16 & node.boxes(), begin)
     }
 
     /// The boxes of which some part lies between the two planes of one axis.
