@@ -2,7 +2,7 @@
 
 use super::Tree;
 use super::build::WIDE_NODE_COST;
-use super::wide::{Child, ChildKind, WIDTH};
+use super::node::{Child, ChildKind, WIDTH};
 
 impl Tree {
     /// The surface area heuristic's cost of a ray that meets the whole, in tests of a leaf block: each node and each block
