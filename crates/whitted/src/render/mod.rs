@@ -15,6 +15,7 @@ mod image;
 mod jitter;
 mod lighting;
 mod media;
+mod packing;
 mod probe;
 mod progress;
 mod queue;

@@ -8,19 +8,30 @@ use simd::{F32Lanes, MaskLanes, U32Lanes};
 /// that whole registers can be stored and loaded at the end; what lies there is no record.
 #[derive(Debug)]
 pub(super) struct Rows<const F: usize, const U: usize> {
-    floats: [Vec<f32>; F],
-    integers: [Vec<u32>; U],
+    floats: Vec<f32>,
+    integers: Vec<u32>,
+    /// Where the first row of each begins: at a cache line.
+    first: [usize; 2],
+    /// From a row to the next.
+    stride: usize,
     len: usize,
 }
 
 impl<const F: usize, const U: usize> Default for Rows<F, U> {
     fn default() -> Self {
-        Self { floats: [const { Vec::new() }; F], integers: [const { Vec::new() }; U], len: 0 }
+        Self { floats: Vec::new(), integers: Vec::new(), first: [0; 2], stride: STAGGER, len: 0 }
     }
 }
 
 /// The widest lanes.
 pub(super) const BLOCK: usize = 16;
+
+/// Bytes of a cache line.
+const LINE: usize = 64;
+
+/// Rows are longer than a power of two by this: rows a power of two apart would compete for the same sets of the
+/// first-level cache, which has fewer ways than records have fields.
+const STAGGER: usize = 5 * LINE / size_of::<f32>();
 
 impl<const F: usize, const U: usize> Rows<F, U> {
     #[inline(always)]
@@ -42,36 +53,38 @@ impl<const F: usize, const U: usize> Rows<F, U> {
         self.len = self.len.min(len);
     }
 
-    /// A row of floats.
+    /// A row of floats; empty where nothing was ever appended.
     #[inline(always)]
     pub(super) fn floats(&self, row: usize) -> &[f32] {
-        &self.floats[row][..self.len]
+        self.floats.get(self.float_row(row)..self.float_row(row) + self.len).unwrap_or_default()
     }
 
     /// A row of integers.
     #[inline(always)]
     pub(super) fn integers(&self, row: usize) -> &[u32] {
-        &self.integers[row][..self.len]
+        self.integers.get(self.integer_row(row)..self.integer_row(row) + self.len).unwrap_or_default()
     }
 
     /// Sixteen floats of a row; beyond the last record, anything.
     #[inline(always)]
     pub(super) fn block(&self, row: usize, at: usize) -> &[f32; BLOCK] {
-        self.floats[row][at..].first_chunk().expect("rows are longer than the records are many")
+        let start = self.float_row(row) + at;
+        self.floats[start..].first_chunk().expect("rows are longer than the records are many")
     }
 
     /// Append the records of the lanes `mask`, in order.
     #[inline(always)]
     pub(super) fn append<L: F32Lanes>(&mut self, mask: L::Mask, floats: [L; F], integers: [L::U32; U]) {
-        if self.room() < self.len + 2 * BLOCK {
+        if self.stride < self.len + 2 * BLOCK + STAGGER {
             self.grow();
         }
-        let at = self.len;
         for i in 0..F {
-            floats[i].compress_store(mask, &mut self.floats[i][at..]);
+            let at = self.float_row(i) + self.len;
+            floats[i].compress_store(mask, &mut self.floats[at..]);
         }
         for i in 0..U {
-            integers[i].compress_store(mask, &mut self.integers[i][at..]);
+            let at = self.integer_row(i) + self.len;
+            integers[i].compress_store(mask, &mut self.integers[at..]);
         }
         self.len += mask.bits().count_ones() as usize;
     }
@@ -81,32 +94,47 @@ impl<const F: usize, const U: usize> Rows<F, U> {
     pub(super) fn load<L: F32Lanes>(&self, token: L::Token, at: usize) -> ([L; F], [L::U32; U]) {
         let mut floats = [L::splat(token, 0.0); F];
         for i in 0..F {
-            floats[i] = L::load_slice(token, &self.floats[i][at..]);
+            floats[i] = L::load_slice(token, &self.floats[self.float_row(i) + at..]);
         }
         let mut integers = [L::U32::splat(token, 0); U];
         for i in 0..U {
-            integers[i] = L::U32::load_slice(token, &self.integers[i][at..]);
+            integers[i] = L::U32::load_slice(token, &self.integers[self.integer_row(i) + at..]);
         }
         (floats, integers)
     }
 
-    /// How long the rows are.
     #[inline(always)]
-    fn room(&self) -> usize {
-        match (self.floats.first(), self.integers.first()) {
-            (Some(row), _) => row.len(),
-            (None, Some(row)) => row.len(),
-            (None, None) => usize::MAX,
-        }
+    fn float_row(&self, row: usize) -> usize {
+        self.first[0] + row * self.stride
+    }
+
+    #[inline(always)]
+    fn integer_row(&self, row: usize) -> usize {
+        self.first[1] + row * self.stride
     }
 
     #[cold]
     #[inline(never)]
     fn grow(&mut self) {
-        let room = (self.len + 2 * BLOCK).next_power_of_two();
-        self.floats.iter_mut().for_each(|row| row.resize(room, 0.0));
-        self.integers.iter_mut().for_each(|row| row.resize(room, 0));
+        let stride = (self.len + 2 * BLOCK).next_power_of_two() + STAGGER;
+        let floats = |row| self.floats(row);
+        let (new_floats, first_float) = spread::<_, F>(std::array::from_fn(floats), stride);
+        let integers = |row| self.integers(row);
+        let (new_integers, first_integer) = spread::<_, U>(std::array::from_fn(integers), stride);
+        (self.floats, self.integers) = (new_floats, new_integers);
+        (self.first, self.stride) = ([first_float, first_integer], stride);
     }
+}
+
+/// Memory for rows `stride` apart that begin like these; and where the first begins in it.
+fn spread<T: Copy + Default, const N: usize>(rows: [&[T]; N], stride: usize) -> (Vec<T>, usize) {
+    let mut all = vec![T::default(); N * stride + BLOCK];
+    let first = all.as_ptr().align_offset(LINE).min(BLOCK);
+    for (i, row) in rows.into_iter().enumerate() {
+        let start = first + i * stride;
+        all[start..start + row.len()].copy_from_slice(row);
+    }
+    (all, first)
 }
 
 /// The first `count` lanes, or all if there are fewer.

@@ -2,13 +2,14 @@
 
 use super::context::Context;
 use super::lighting::Sent;
-use super::rows::Rows;
+use super::packing::Packing;
+use super::rows::{BLOCK, Rows};
 use super::samples::Samples;
 use crate::math::Vec3f;
 use crate::ray::{HitBatch, Ray, RayBatch, Rays};
 use crate::scene::Shadows;
 use crate::tree::{BitSet, Occlusion, Scratch};
-use simd::F32Lanes;
+use simd::{F32Lanes, Kernel, Level, Simd, U32Lanes};
 
 /// Light passes at most this many surfaces; what would pass more is lost. Bounds the work of a shadow ray.
 pub(super) const MAX_FILTERS: usize = 256;
@@ -24,16 +25,26 @@ pub(super) fn opaque_primitives<'a>(context: &Context<'a>) -> Option<&'a BitSet>
     }
 }
 
-/// The shadow rays of a batch towards one light.
+/// Shadow rays towards one light.
 #[derive(Debug, Default)]
 pub(super) struct ShadowBatch {
     /// Origin, direction, end of the range, light; sample.
     rows: Rows<10, 1>,
+    packed: Packed,
     occlusion: Vec<Occlusion>,
     filtered: FilteredBatch,
 }
 
 impl ShadowBatch {
+    pub(super) fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Forget all rays.
+    pub(super) fn clear(&mut self) {
+        self.rows.clear();
+    }
+
     /// Queue the segments between surfaces and the lamp, in the lanes `mask`; their samples gain light if nothing is in
     /// between.
     #[inline(always)]
@@ -49,15 +60,21 @@ impl ShadowBatch {
             return;
         }
         samples.statistics.shadow_rays += self.rows.len() as u64;
-        samples.statistics +=
-            context.query.occluded(rays(&self.rows), opaque_primitives(context), &mut self.occlusion, scratch);
+        self.packed.fill(context.execution.level, &self.rows);
+        let rays = self.packed.rays();
+        let opaque = opaque_primitives(context);
+        samples.statistics += context.query.occluded(rays, opaque, &mut self.occlusion, scratch);
         let [r, g, b] = [7, 8, 9].map(|row| self.rows.floats(row));
-        for (index, (&occlusion, &sample)) in self.occlusion.iter().zip(self.rows.integers(0)).enumerate() {
-            let light = Vec3f::new(r[index], g[index], b[index]);
+        let (sample, order) = (self.rows.integers(0), self.packed.packing.order());
+        for (place, &occlusion) in self.occlusion.iter().enumerate() {
+            if occlusion == Occlusion::Blocked {
+                continue;
+            }
+            let index = order[place] as usize;
+            let (sample, light) = (sample[index], Vec3f::new(r[index], g[index], b[index]));
             match occlusion {
-                Occlusion::Clear => samples.add(sample, light),
-                Occlusion::Filtered => self.filtered.push(&rays(&self.rows).get(index), sample, light),
-                Occlusion::Blocked => {}
+                Occlusion::Filtered => self.filtered.push(&rays.get(place), sample, light),
+                _ => samples.add(sample, light),
             }
         }
         self.filtered.resolve(context, scratch, samples);
@@ -65,9 +82,54 @@ impl ShadowBatch {
     }
 }
 
-fn rays(rows: &Rows<10, 1>) -> Rays<'_> {
-    let row = |row| rows.floats(row);
-    Rays::new([row(0), row(1), row(2)], [row(3), row(4), row(5)]).with_t_max(row(6))
+/// The rays of a batch in the order in which they are traced.
+#[derive(Debug, Default)]
+struct Packed {
+    packing: Packing,
+    /// Origin, direction, end of the range.
+    rows: [Vec<f32>; 7],
+}
+
+impl Packed {
+    fn fill(&mut self, level: Level, batch: &Rows<10, 1>) {
+        let row = |row| batch.floats(row);
+        self.packing.sort(level, [row(3), row(4), row(5)]);
+        simd::dispatch(level, Permute { order: self.packing.order(), batch, rows: &mut self.rows });
+    }
+
+    fn rays(&self) -> Rays<'_> {
+        let [ox, oy, oz, dx, dy, dz, t_max] = &self.rows;
+        Rays::new([ox, oy, oz], [dx, dy, dz]).with_t_max(t_max)
+    }
+}
+
+/// Brings rays into an order.
+struct Permute<'a> {
+    order: &'a [u32],
+    batch: &'a Rows<10, 1>,
+    rows: &'a mut [Vec<f32>; 7],
+}
+
+impl Kernel for Permute<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, token: S) {
+        let Self { order, batch, rows } = self;
+        let (whole, rest) = order.as_chunks::<BLOCK>();
+        for (row, out) in rows.iter_mut().enumerate() {
+            let from = batch.floats(row);
+            out.resize(order.len(), 0.0);
+            let (to, to_rest) = out.as_chunks_mut::<BLOCK>();
+            for (to, order) in to.iter_mut().zip(whole) {
+                let index = <S::F32x16 as F32Lanes>::U32::load(token, order);
+                S::F32x16::gather(from, index).store(to);
+            }
+            for (to, &index) in to_rest.iter_mut().zip(rest) {
+                *to = from[index as usize];
+            }
+        }
+    }
 }
 
 /// Shadow rays that meet only transparent surfaces: each round finds the next surface of every ray that is left.

@@ -2,7 +2,7 @@
 //!
 //! Rays wait in one queue for each generation. The deepest queue that is not empty is worked off first, a chunk at a
 //! time, so that at most two chunks for each generation and one more wait at any moment, however many rays a sample
-//! has.
+//! has. Shadow rays wait for those of other generations: the more there are of one light, the better they pack.
 
 use super::context::Context;
 use super::lighting::LitPoints;
@@ -21,9 +21,12 @@ use crate::ray::{HitBatch, NONE};
 use crate::tree::Scratch;
 use simd::{F32Lanes, Kernel, MaskLanes, Simd, U32Lanes};
 
-/// Rays that are traced and shaded together: enough to keep the walks' lists long, few enough for the second-level
-/// cache.
+/// Rays that are traced and shaded together: enough to keep the walks' lists long. Fewer fit the second-level cache
+/// better and gain nothing (docs/decisions/0002).
 pub(super) const CHUNK: usize = 4096;
+
+/// Shadow rays of all lights that wait before any is traced: the more there are, the narrower are their packets.
+const SHADOWS: usize = 65536;
 
 /// The memory of one thread.
 #[derive(Debug, Default)]
@@ -31,7 +34,8 @@ pub(super) struct Wavefront {
     queues: Vec<RayQueue>,
     hits: HitBatch,
     lit: LitPoints,
-    shadows: ShadowBatch,
+    /// One for each light.
+    shadows: Vec<ShadowBatch>,
     scratch: Scratch,
 }
 
@@ -54,6 +58,10 @@ impl Wavefront {
             }
             self.step(context, generation, samples, probe);
         }
+        let Self { shadows, scratch, .. } = self;
+        watched(probe, Phase::Shadow, || {
+            shadows.iter_mut().for_each(|shadows| shadows.resolve(context, scratch, samples));
+        });
         Ok(())
     }
 
@@ -64,6 +72,8 @@ impl Wavefront {
         }
         let has_media = context.look.table().has_transparent();
         self.queues.iter_mut().for_each(|queue| queue.reset(has_media));
+        self.shadows.resize_with(context.look.lights().len(), ShadowBatch::default);
+        self.shadows.iter_mut().for_each(ShadowBatch::clear);
         simd::dispatch(context.execution.level, Begin { context, places, queue: &mut self.queues[0] });
     }
 
@@ -89,9 +99,11 @@ impl Wavefront {
             );
             queue.truncate(first);
         });
-        for (light, origin) in context.look.lights() {
+        for ((light, origin), shadows) in context.look.lights().iter().zip(shadows) {
             watched(probe, Phase::Shade, || lit.light(context.execution.level, light, *origin, shadows));
-            watched(probe, Phase::Shadow, || shadows.resolve(context, scratch, samples));
+            if shadows.len() * context.look.lights().len() >= SHADOWS {
+                watched(probe, Phase::Shadow, || shadows.resolve(context, scratch, samples));
+            }
         }
     }
 }

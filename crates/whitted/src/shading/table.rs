@@ -24,6 +24,8 @@ pub(crate) struct MaterialTable {
     checkers: Vec<[f32; 7]>,
     /// Reflected and transmitted shares, index of refraction, reflectance.
     scattering: Vec<[f32; 8]>,
+    /// Indices of refraction.
+    iors: Vec<f32>,
     /// Halvings of light per internal length.
     absorption: Vec<[f32; 3]>,
     absorbs: bool,
@@ -60,6 +62,7 @@ impl MaterialTable {
         self.local.push([even.x, even.y, even.z, ambient, diffuse, s.x, s.y, s.z, local.exponent, is_blinn]);
         self.checkers.push([odd.x, odd.y, odd.z, frequency, shift.x, shift.y, shift.z]);
         self.scattering.push(material.scattering_row());
+        self.iors.push(material.ior());
         self.absorption.push(material.absorb().to_array());
         self.absorbs |= material.absorb().max_component() > 0.0;
         self.has_transparent |= material.is_transparent();
@@ -121,13 +124,8 @@ impl MaterialTable {
     /// Index of refraction of `medium` where a ray is `inside` one, else 1.
     #[inline(always)]
     pub(crate) fn ior<L: F32Lanes>(&self, token: L::Token, inside: L::Mask, medium: L::U32) -> L {
-        let one = L::splat(token, 1.0);
-        if !inside.any() {
-            return one;
-        }
-        let index = Index::<L>::new(token, inside, medium);
-        let [.., ior, _] = index.rows(token, &self.scattering);
-        L::select(inside, ior, one)
+        let index = L::U32::select(inside, medium, L::U32::splat(token, 0));
+        L::select(inside, L::gather(&self.iors, index), L::splat(token, 1.0))
     }
 }
 
