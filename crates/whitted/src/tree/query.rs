@@ -173,17 +173,12 @@ impl Query<'_> {
         &self,
         rays: Rays<'_>,
         chunk: Range<usize>,
-        mut goal: G,
+        goal: G,
         filter: Option<Filter<'_>>,
         scratch: &mut Scratch,
     ) -> Counts {
-        match filter {
-            None => self.walk(rays, chunk, &mut goal, scratch),
-            Some(filter) => {
-                let mut goal = Filtered { goal, first: chunk.start, filter };
-                self.walk(rays, chunk, &mut goal, scratch)
-            }
-        }
+        let first = chunk.start;
+        self.walk(rays, chunk, &mut Filtered { goal, first, filter }, scratch)
     }
 
     /// Walk one chunk: planes first, since they lie outside the tree and shorten the rays, then the tree.

@@ -41,19 +41,8 @@ impl<G: Goal> Kernel for Walk<'_, G> {
         let mut counts = Counts::default();
         let walked = self.packets(token, &mut counts);
         self.record(token, walked);
-        match self.kind {
-            WalkKind::Auto | WalkKind::Stream if self.rays.any_slack() => {
-                stream::walk::<S, G, true>(token, &mut self, &mut counts);
-            }
-            WalkKind::Auto | WalkKind::Stream => stream::walk::<S, G, false>(token, &mut self, &mut counts),
-            WalkKind::Single => {
-                let mut stack = std::mem::take(&mut self.lists.stack);
-                for index in 0..self.rays.len() {
-                    single::walk(token, &mut self, &mut stack, index, super::node::Child::interior(0), &mut counts);
-                }
-                self.lists.stack = stack;
-            }
-        }
+        let together = if self.kind == WalkKind::Single { 1 } else { usize::MAX };
+        stream::walk(token, &mut self, together, &mut counts);
         counts
     }
 }

@@ -77,6 +77,7 @@ pub(in crate::tree) struct PreparedRays {
     sheared: Vec<Record>,
     spheres: Vec<Record>,
     original: Vec<Ray>,
+    /// True if a ray starts so far away that the boxes' padding does not cover its rounding.
     any_slack: bool,
 }
 
@@ -111,6 +112,7 @@ impl PreparedRays {
     }
 
     /// True if a ray starts so far away that the boxes' padding does not cover its rounding.
+    #[inline(always)]
     pub(super) fn any_slack(&self) -> bool {
         self.any_slack
     }

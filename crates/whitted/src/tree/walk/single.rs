@@ -1,4 +1,4 @@
-//! Single rays through the wide tree: the one-ray API, and in turns the tail of the stream.
+//! Single rays through the wide tree: alone, and in turns as the tail of the stream.
 
 use super::Walk;
 use super::slabs::Slabs;
@@ -36,21 +36,6 @@ struct Path {
     index: usize,
     base: usize,
     top: usize,
-}
-
-/// Follow ray `index` through everything under `start`.
-#[inline(always)]
-pub(super) fn walk<S: Simd, G: Goal>(
-    token: S,
-    walk: &mut Walk<'_, G>,
-    stack: &mut Stack,
-    index: usize,
-    start: Child,
-    counts: &mut Counts,
-) {
-    stack.reserve(walk.tree.depth(), 1);
-    let mut path = Path::new(walk, stack, index, start, 0);
-    while path.step(token, walk, stack, counts) {}
 }
 
 /// Follow the rays `ids`, at most [`WAYS`], through everything under `start`, a step of each in turn: while one waits for

@@ -40,9 +40,9 @@ pub(in crate::tree) struct Lists {
     pub(super) stack: Stack,
 }
 
-/// Walk all prepared rays. `SLACK`: some start so far away that near and far planes need different offsets.
+/// Walk all rays that have records, at most `together` in a list.
 #[inline(always)]
-pub(super) fn walk<S: Simd, G: Goal, const SLACK: bool>(token: S, walk: &mut Walk<'_, G>, counts: &mut Counts) {
+pub(super) fn walk<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, together: usize, counts: &mut Counts) {
     assert!(walk.rays.len() <= CHUNK, "ray numbers fit 16 bits");
     let mut lists = std::mem::take(walk.lists);
     // Every level leaves at most 15 lists behind, each no longer than the chunk.
@@ -62,11 +62,14 @@ pub(super) fn walk<S: Simd, G: Goal, const SLACK: bool>(token: S, walk: &mut Wal
         }
     }
     for octant in 0..8 {
-        let len = lists.octants[octant].len();
-        if len > 0 {
-            lists.ids[..len].copy_from_slice(&lists.octants[octant]);
+        let count = lists.octants[octant].len();
+        let mut start = 0;
+        while start < count {
+            let len = together.min(count - start);
+            lists.ids[..len].copy_from_slice(&lists.octants[octant][start..start + len]);
             lists.waiting.push((Child::interior(0), len));
-            work_off::<S, G, SLACK>(token, walk, &mut lists, len, octant, counts);
+            work_off(token, walk, &mut lists, len, octant, counts);
+            start += len;
         }
     }
     *walk.lists = lists;
@@ -74,7 +77,7 @@ pub(super) fn walk<S: Simd, G: Goal, const SLACK: bool>(token: S, walk: &mut Wal
 
 /// Work off the waiting lists, whose ray numbers fill `ids[..top]`.
 #[inline(always)]
-fn work_off<S: Simd, G: Goal, const SLACK: bool>(
+fn work_off<S: Simd, G: Goal>(
     token: S,
     walk: &mut Walk<'_, G>,
     lists: &mut Lists,
@@ -94,7 +97,7 @@ fn work_off<S: Simd, G: Goal, const SLACK: bool>(
                 lists.current.clear();
                 lists.current.extend_from_slice(&lists.ids[top..top + len]);
                 lists.masks.resize(len, 0);
-                let any = enter::<S, SLACK>(token, node, walk.rays, &lists.current, octant, &mut lists.masks);
+                let any = enter(token, node, walk.rays, &lists.current, octant, &mut lists.masks);
                 top = distribute(token, node, octant, any, lists, top);
             }
             ChildKind::Leaf { kind, first, count } => {
@@ -108,7 +111,17 @@ fn work_off<S: Simd, G: Goal, const SLACK: bool>(
 
 /// Compute for each ray of a list which children it enters; return the children that any enters.
 #[inline(always)]
-fn enter<S: Simd, const SLACK: bool>(
+fn enter<S: Simd>(token: S, node: &Node, rays: &PreparedRays, ids: &[u16], octant: usize, masks: &mut [u16]) -> u16 {
+    // The question is asked here, not for each ray.
+    match rays.any_slack() {
+        true => enter_each::<S, true>(token, node, rays, ids, octant, masks),
+        false => enter_each::<S, false>(token, node, rays, ids, octant, masks),
+    }
+}
+
+/// `SLACK`: near and far planes need different offsets.
+#[inline(always)]
+fn enter_each<S: Simd, const SLACK: bool>(
     token: S,
     node: &Node,
     rays: &PreparedRays,
