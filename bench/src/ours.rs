@@ -60,17 +60,7 @@ impl Contestant for Ours<'_> {
     }
 
     fn run(&mut self) {
-        let c = self.count();
-        if std::env::var("COUNT").is_ok() {
-            let n: usize = self.batches.iter().map(|b| b.len()).sum();
-            eprintln!(
-                "{} {} rays: per 64 rays: {:.1} node steps, {:.1} tests",
-                self.note,
-                n,
-                c.node_steps as f64 / n as f64,
-                c.primitive_tests as f64 / n as f64
-            );
-        }
+        self.count();
     }
 
     fn answers(&self) -> Vec<f32> {

@@ -173,12 +173,17 @@ impl Query<'_> {
         &self,
         rays: Rays<'_>,
         chunk: Range<usize>,
-        goal: G,
+        mut goal: G,
         filter: Option<Filter<'_>>,
         scratch: &mut Scratch,
     ) -> Counts {
-        let first = chunk.start;
-        self.walk(rays, chunk, &mut Filtered { goal, first, filter }, scratch)
+        match filter {
+            None => self.walk(rays, chunk, &mut goal, scratch),
+            Some(filter) => {
+                let mut goal = Filtered { goal, first: chunk.start, filter };
+                self.walk(rays, chunk, &mut goal, scratch)
+            }
+        }
     }
 
     /// Walk one chunk: planes first, since they lie outside the tree and shorten the rays, then the tree.
