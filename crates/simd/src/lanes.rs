@@ -33,10 +33,10 @@ pub trait Simd: Copy + Send + Sync + Debug + 'static {
 
     /// Sixteen small integers as floats.
     #[inline(always)]
-    fn bytes(self, from: &[u8; 16]) -> Self::F32x16 {
+    fn shorts(self, from: &[u16; 16]) -> Self::F32x16 {
         let mut lanes = [0.0; 16];
-        for (lane, &byte) in lanes.iter_mut().zip(from) {
-            *lane = f32::from(byte);
+        for (lane, &short) in lanes.iter_mut().zip(from) {
+            *lane = f32::from(short);
         }
         Self::F32x16::load(self, &lanes)
     }

@@ -25,12 +25,12 @@ impl Simd for Avx2 {
         v.yzx()
     }
     #[inline(always)]
-    fn bytes(self, from: &[u8; 16]) -> Pair<F32x8> {
+    fn shorts(self, from: &[u16; 16]) -> Pair<F32x8> {
         // SAFETY: the token exists; the array is as long as the register that is read.
         let (low, high) = unsafe {
-            let all = _mm_loadu_si128(from.as_ptr().cast());
-            let high = _mm_srli_si128::<8>(all);
-            (_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(all)), _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(high)))
+            let low = _mm_loadu_si128(from.as_ptr().cast());
+            let high = _mm_loadu_si128(from.as_ptr().add(8).cast());
+            (_mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(low)), _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(high)))
         };
         Pair(F32x8::wrap(low, self), F32x8::wrap(high, self))
     }

@@ -28,9 +28,9 @@ impl Simd for Avx512 {
         v.yzx()
     }
     #[inline(always)]
-    fn bytes(self, from: &[u8; 16]) -> F32x16 {
+    fn shorts(self, from: &[u16; 16]) -> F32x16 {
         // SAFETY: the token exists; the array is as long as the register that is read.
-        let lanes = unsafe { _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(from.as_ptr().cast()))) };
+        let lanes = unsafe { _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(_mm256_loadu_si256(from.as_ptr().cast()))) };
         F32x16::wrap(lanes, self)
     }
     #[inline(always)]

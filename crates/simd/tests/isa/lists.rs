@@ -84,24 +84,24 @@ fn compress_follows_the_order() {
     }
 }
 
-struct Bytes([u8; 16]);
+struct Shorts([u16; 16]);
 
-impl Kernel for Bytes {
+impl Kernel for Shorts {
     type Output = [f32; 16];
     #[inline(always)]
     fn run<S: Simd>(self, token: S) -> [f32; 16] {
         let mut out = [0.0; 16];
-        token.bytes(&self.0).store(&mut out);
+        token.shorts(&self.0).store(&mut out);
         out
     }
 }
 
 #[test]
-fn bytes_become_floats() {
+fn shorts_become_floats() {
     for level in levels() {
-        for first in (0..=255).step_by(16) {
-            let bytes: [u8; 16] = std::array::from_fn(|i| (first + i) as u8);
-            assert_eq!(dispatch(level, Bytes(bytes)), bytes.map(f32::from), "{level}");
+        for first in (0..=65535).step_by(16) {
+            let shorts: [u16; 16] = std::array::from_fn(|i| (first + i) as u16);
+            assert_eq!(dispatch(level, Shorts(shorts)), shorts.map(f32::from), "{level}");
         }
     }
 }
