@@ -1,7 +1,7 @@
 //! The nodes of the production tree: sixteen boxes on a grid.
 
 use super::leaf::LeafKind;
-use crate::math::Aabb;
+use crate::math::{Aabb, Vec3f};
 use simd::{F32Lanes, Simd};
 
 /// Children of a node.
@@ -145,18 +145,29 @@ impl Node {
 
     /// Sort the lanes by the distance of their centres along each octant's diagonal, far to near.
     fn sort(&mut self) {
+        let centers: [Vec3f; WIDTH] = std::array::from_fn(|lane| self.bounds(lane).center());
         for octant in 0..4 {
-            let key = |lane: usize| -> f32 {
-                let center = self.bounds(lane).center();
-                (0..3).map(|axis| if octant >> axis & 1 == 0 { center[axis] } else { -center[axis] }).sum()
-            };
-            // The centre of the empty box is NaN: any place will do.
-            let keys: [f32; WIDTH] = std::array::from_fn(|lane| Some(key(lane)).filter(|k| !k.is_nan()).unwrap_or(0.0));
-            let mut lanes: [u8; WIDTH] = std::array::from_fn(|lane| lane as u8);
-            lanes.sort_by(|&a, &b| keys[usize::from(b)].total_cmp(&keys[usize::from(a)]));
-            self.order[octant] = lanes;
+            let mut distance = [0.0; WIDTH];
+            for (distance, center) in distance.iter_mut().zip(&centers) {
+                let along: f32 = (0..3).map(|a| if octant >> a & 1 == 0 { center[a] } else { -center[a] }).sum();
+                // The centre of the empty box is NaN: any place will do.
+                *distance = if along.is_nan() { 0.0 } else { along };
+            }
+            for lane in 0..WIDTH {
+                self.order[octant][rank(&distance, lane)] = lane as u8;
+            }
         }
     }
+}
+
+/// How many others lie farther than `lane`, or as far with a lower number: counting is faster than a sort.
+fn rank(distance: &[f32; WIDTH], lane: usize) -> usize {
+    let mut before = 0;
+    for other in 0..WIDTH {
+        let farther = distance[other] > distance[lane];
+        before += u32::from(farther | ((distance[other] == distance[lane]) & (other < lane)));
+    }
+    before as usize
 }
 
 /// The smallest number of 8 bits that is positive, normal and not below `value`.
@@ -216,7 +227,7 @@ impl Child {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{SplitMix64, Vec3f};
+    use crate::math::SplitMix64;
 
     fn nasty(rng: &mut SplitMix64) -> f32 {
         let scale = [0.0, 1e-30, 1e-6, 0.1, 1.0, 1.9][rng.below(6) as usize];
