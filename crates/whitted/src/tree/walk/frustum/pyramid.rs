@@ -129,9 +129,9 @@ impl Pyramid {
         let distance = spread + depth;
         let size = largest(largest_of(bc), largest(largest_of(ca), largest_of(ab)));
         let spans = distance * size;
-        let margin = F::splat(token, 8.0 * ULP) * spread * spread + F::splat(token, 48.0 * ULP) * spans;
+        let margin = F::splat(token, SPREAD_ERROR) * spread * spread + F::splat(token, SPAN_ERROR) * spans;
         let volume = a[0] * normals[0][0] + a[1] * normals[0][1] + a[2] * normals[0][2];
-        let is_sure = (F::splat(token, 256.0 * ULP) * distance * spans).lt(volume.abs());
+        let is_sure = (F::splat(token, VOLUME_ERROR) * distance * spans).lt(volume.abs());
         let margin = F::select(is_sure, margin, F::splat(token, f32::INFINITY));
         let sign = volume.to_bits() & F::U32::splat(token, 1 << 31);
         let along = F::splat(token, if self.backward { -1.0 } else { 1.0 });
@@ -205,6 +205,17 @@ const MIN_EDGES: u32 = 2;
 
 /// Half a unit in the last place of 1.
 const ULP: f32 = 1.0 / (1 << 24) as f32;
+
+/// Twice what the exact test's sheared coordinates cost an edge function, per square of their size: see
+/// [`Pyramid::edges`].
+const SPREAD_ERROR: f32 = 8.0 * ULP;
+
+/// Twice what the linear form loses, per product of distance and size of the triangle.
+const SPAN_ERROR: f32 = 48.0 * ULP;
+
+/// More than twice what the volume between apex and triangle loses, per product of squared distance and size, so that
+/// beyond it the volume has the sign of the areas of all hits.
+const VOLUME_ERROR: f32 = 256.0 * ULP;
 
 /// The planes through a packet's origin and the edges of eight triangles.
 #[derive(Default)]
