@@ -234,10 +234,7 @@ impl HitBatch {
     /// # Panics
     /// If the range is not within the batch.
     pub fn reset(&mut self, range: Range<usize>) {
-        self.t[range.clone()].fill(Hit::MISS.t);
-        self.u[range.clone()].fill(Hit::MISS.u);
-        self.v[range.clone()].fill(Hit::MISS.v);
-        self.primitive[range.clone()].fill(Hit::MISS.primitive);
+        HitsMut::from(&mut *self).clear(range.clone());
         self.instance[range].fill(Hit::MISS.instance);
     }
 

@@ -10,7 +10,7 @@ pub(super) const WIDTH: usize = 16;
 /// A node: the boxes of 16 children as rows of 16-bit numbers, six cache lines.
 ///
 /// Full coordinates would take nine lines, and rays that have little in common wait for memory most of the time. Bytes
-/// would take four, but their grid is too coarse for the thin boxes of walls: mirror rays in Sponza lose 12 %, and in
+/// would take four, but their grid is too coarse for the thin boxes of walls: mirror rays in Sponza lose a tenth, and in
 /// scenes far larger than the caches nothing is gained over six lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]

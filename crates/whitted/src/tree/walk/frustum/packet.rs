@@ -92,7 +92,7 @@ impl Packet {
             ];
             let (dx, dy, dz) = (d[x], d[y], d[z]);
             let ahead = if self.backward { dz.lt(zero) } else { zero.lt(dz) };
-            sound = sound & ahead & dominated(dx, dz, x < z) & dominated(dy, dz, y < z);
+            sound = sound & ahead & is_dominant(d, self.axis);
             sound = sound & zero.le(self.t_min.load(token, row));
             self.shear[0].store::<S>(row, dx / dz);
             self.shear[1].store::<S>(row, dy / dz);
@@ -212,7 +212,14 @@ impl Packet {
     }
 }
 
-/// True where `component` does not take the place of `dominant` as the dominant one; of two equals the first does.
+/// The lanes whose dominant axis is `axis`, by the rule of [`dominant_axis`]: of equals the first.
+#[inline(always)]
+fn is_dominant<F: F32Lanes>(direction: [F; 3], axis: usize) -> F::Mask {
+    let [x, y, z] = renamed(axis);
+    dominated(direction[x], direction[z], x < z) & dominated(direction[y], direction[z], y < z)
+}
+
+/// True where `component` does not take the place of `dominant`; `is_first` says who wins a tie.
 #[inline(always)]
 fn dominated<F: F32Lanes>(component: F, dominant: F, is_first: bool) -> F::Mask {
     if is_first { component.abs().lt(dominant.abs()) } else { component.abs().le(dominant.abs()) }
@@ -227,4 +234,24 @@ fn same<S: Simd>(token: S, row: &[f32], value: f32) -> bool {
         equal = equal & S::F32x16::load_slice(token, &row[start..]).eq(value);
     }
     equal.all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use simd::{Scalar, ScalarF32};
+
+    #[test]
+    fn a_tie_of_axes_is_settled_as_for_single_rays() {
+        let components = [-2.0, -1.0, -0.0, 1.0, 2.0];
+        let lane = |value: f32| ScalarF32::<1>::splat(Scalar, value);
+        for (x, y, z) in
+            components.iter().flat_map(|x| components.iter().flat_map(move |y| components.map(|z| (*x, *y, z))))
+        {
+            for axis in 0..3 {
+                let expected = dominant_axis(Vec3::new(x, y, z)) == axis;
+                assert_eq!(is_dominant([lane(x), lane(y), lane(z)], axis).any(), expected, "{x} {y} {z}, axis {axis}");
+            }
+        }
+    }
 }
