@@ -4,6 +4,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use formats::rays::{HitFormat, RayFormat};
 use std::path::PathBuf;
 use std::str::FromStr;
+use whitted::classic::{Split, TriangleTest, Walk};
 use whitted::render::{Method, Region};
 use whitted::scene::{Antialias, Sampling, Shadows};
 use whitted::tree::{TreeKind, WalkKind};
@@ -159,18 +160,54 @@ pub(crate) struct ExecutionArguments {
     /// Size of the regions that are rendered one after another [default: 64]
     #[arg(long, value_name = "N|WxH|scanline|frame", value_parser = parse_region)]
     pub(crate) region: Option<Region>,
-    /// Splits that the tree may use [default: best]
-    #[arg(long, value_name = "best|fast|kd|none", value_parser = parse_named(&TREES))]
-    pub(crate) tree: Option<TreeKind>,
-    /// How rays go through the tree [default: auto]
-    #[arg(long, value_name = "auto|stream|single", value_parser = parse_named(&WALKS))]
-    pub(crate) walk: Option<WalkKind>,
+    /// Splits that the tree may use; or, with --render recursive, the paper's kd-tree of 8-byte nodes (by surface areas,
+    /// or by medians) or a uniform grid [default: best]
+    #[arg(long, value_name = "best|fast|kd|none|kd8|median|grid", value_parser = parse_named(&RENDER_TREES))]
+    pub(crate) tree: Option<TreeChoice>,
+    /// How rays go through the tree; sequential and stack are for kd8 and median [default: auto; stack]
+    #[arg(long, value_name = "auto|stream|single|sequential|stack", value_parser = parse_named(&WALKS))]
+    pub(crate) walk: Option<WalkChoice>,
     /// Instruction set: scalar, sse4.2, avx2, avx512 [default: the widest this CPU has]
     #[arg(long, value_name = "LEVEL", value_parser = parse_level)]
     pub(crate) simd: Option<simd::Level>,
     /// Batches of rays by generation, or one ray after the other [default: wavefront]
     #[arg(long, value_name = "wavefront|recursive", value_parser = parse_named(&METHODS))]
     pub(crate) render: Option<Method>,
+    /// Arithmetic of the paper's tests, with --render recursive and --tree kd8, median, grid or none: one component at a
+    /// time, four at once, or four with estimated square roots [default: scalar]
+    #[arg(long, value_name = "scalar|sse|rsqrt", value_parser = parse_named(&MATHS))]
+    pub(crate) math: Option<MathChoice>,
+    /// Test of triangles: watertight, or the paper's, which may differ at edges and is for the same trees as --math
+    /// [default: watertight]
+    #[arg(long, value_name = "watertight|projection", value_parser = parse_named(&TRIANGLES), help_heading = "Picture")]
+    pub(crate) triangle: Option<TriangleTest>,
+}
+
+/// What rays are walked through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TreeChoice {
+    /// The production tree.
+    Wide(TreeKind),
+    /// The paper's kd-tree.
+    Kd8(Split),
+    Grid,
+}
+
+/// How they are walked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum WalkChoice {
+    /// Through the production tree.
+    Wide(WalkKind),
+    /// Through the paper's kd-tree.
+    Kd8(Walk),
+}
+
+/// Arithmetic of the paper's tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MathChoice {
+    Scalar,
+    Sse,
+    Rsqrt,
 }
 
 /// A rectangle of the picture in pixels from its top left corner.
@@ -204,8 +241,26 @@ const SAMPLINGS: [(&str, Sampling); 2] = [("centers", Sampling::Centers), ("corn
 const SHADOWS: [(&str, Shadows); 2] = [("filter", Shadows::Filter), ("opaque", Shadows::Opaque)];
 const TREES: [(&str, TreeKind); 4] =
     [("best", TreeKind::Best), ("fast", TreeKind::Fast), ("kd", TreeKind::Kd), ("none", TreeKind::None)];
-const WALKS: [(&str, WalkKind); 3] =
-    [("auto", WalkKind::Auto), ("stream", WalkKind::Stream), ("single", WalkKind::Single)];
+const RENDER_TREES: [(&str, TreeChoice); 7] = [
+    ("best", TreeChoice::Wide(TreeKind::Best)),
+    ("fast", TreeChoice::Wide(TreeKind::Fast)),
+    ("kd", TreeChoice::Wide(TreeKind::Kd)),
+    ("none", TreeChoice::Wide(TreeKind::None)),
+    ("kd8", TreeChoice::Kd8(Split::Sah)),
+    ("median", TreeChoice::Kd8(Split::Median)),
+    ("grid", TreeChoice::Grid),
+];
+const WALKS: [(&str, WalkChoice); 5] = [
+    ("auto", WalkChoice::Wide(WalkKind::Auto)),
+    ("stream", WalkChoice::Wide(WalkKind::Stream)),
+    ("single", WalkChoice::Wide(WalkKind::Single)),
+    ("sequential", WalkChoice::Kd8(Walk::Sequential)),
+    ("stack", WalkChoice::Kd8(Walk::Stack)),
+];
+const MATHS: [(&str, MathChoice); 3] =
+    [("scalar", MathChoice::Scalar), ("sse", MathChoice::Sse), ("rsqrt", MathChoice::Rsqrt)];
+const TRIANGLES: [(&str, TriangleTest); 2] =
+    [("watertight", TriangleTest::Watertight), ("projection", TriangleTest::Projection)];
 const METHODS: [(&str, Method); 2] = [("wavefront", Method::Wavefront), ("recursive", Method::Recursive)];
 
 /// A parser for a closed list of names.

@@ -22,6 +22,7 @@ mod report;
 mod settings;
 mod stopwatch;
 mod trace;
+mod variant;
 
 use clap::Parser;
 use std::process::ExitCode;

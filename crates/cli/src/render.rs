@@ -9,14 +9,16 @@ use crate::output::Target;
 use crate::progress::Display;
 use crate::report::Report;
 use crate::stopwatch::Stopwatch;
+use crate::variant::Built;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use whitted::render::{Cancel, Frame, PixelRect, render_rect};
+use whitted::render::{Cancel, Classic, Frame, PixelRect, render_classic, render_rect};
 use whitted::scene::{Prepared, Scene};
 use whitted::tree::BuildOptions;
 
 pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     arguments.picture.check()?;
+    let variant = arguments.execution.variant()?;
     let outputs = Outputs::check(arguments)?;
     let pool = arguments.execution.pool()?;
     let cancel = interrupt::install();
@@ -26,14 +28,17 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let rectangle = arguments.picture.rectangle(scene.settings.size)?;
     stop_if(cancel)?;
     let prepared = timed(&mut report.build, || pool.install(|| build(&scene, arguments)))?;
+    let classic = timed(&mut report.build, || {
+        variant.map(|variant| pool.install(|| variant.build(prepared.geometry().primitives())))
+    });
     stop_if(cancel)?;
     tell_details(arguments, &scene, &prepared, pool.current_num_threads());
     let watch = Stopwatch::default();
-    let frame =
-        timed(&mut report.trace, || pool.install(|| trace(&prepared, rectangle, &scene, arguments, cancel, &watch)))?;
+    let job = Job { prepared: &prepared, classic: classic.as_ref(), rectangle, scene: &scene, arguments };
+    let frame = timed(&mut report.trace, || pool.install(|| job.trace(cancel, &watch)))?;
     report.shares = watch.shares();
     report.statistics = frame.statistics;
-    report.tree = prepared.geometry().tree().report();
+    report.tree = classic.as_ref().map_or(prepared.geometry().tree().report(), Built::report);
     timed(&mut report.write, || write(&frame, &scene, &outputs.picture, cancel))?;
     tell_summary(arguments, &outputs.picture, rectangle, &report);
     outputs.write_stats(&report)
@@ -84,24 +89,35 @@ fn scene(arguments: &RenderArguments) -> Result<Scene, Failure> {
 }
 
 fn build(scene: &Scene, arguments: &RenderArguments) -> Result<Prepared, Failure> {
-    let options = BuildOptions { kind: arguments.execution.tree.unwrap_or_default(), ..BuildOptions::default() };
+    let options = BuildOptions { kind: arguments.execution.tree_kind(), ..BuildOptions::default() };
     let prepared = Prepared::new(scene, &options);
     prepared.map_err(|error| Failure::Scene(format!("{}: {error}", arguments.scene.scene.display())))
 }
 
-fn trace(
-    prepared: &Prepared,
+/// What is to be rendered, and how.
+struct Job<'a> {
+    prepared: &'a Prepared,
+    classic: Option<&'a Built>,
     rectangle: PixelRect,
-    scene: &Scene,
-    arguments: &RenderArguments,
-    cancel: &Cancel,
-    watch: &Stopwatch,
-) -> Result<Frame, Failure> {
-    let display = Display::new(arguments.verbosity.quiet);
-    let execution = arguments.execution.execution();
-    let frame = render_rect(prepared, &scene.settings, &execution, &rectangle, &display, cancel, watch);
-    display.finish();
-    frame.map_err(|_cancelled| Failure::Interrupted)
+    scene: &'a Scene,
+    arguments: &'a RenderArguments,
+}
+
+impl Job<'_> {
+    fn trace(&self, cancel: &Cancel, watch: &Stopwatch) -> Result<Frame, Failure> {
+        let Self { prepared, classic, ref rectangle, scene, arguments } = *self;
+        let display = Display::new(arguments.verbosity.quiet);
+        let (settings, execution) = (&scene.settings, arguments.execution.execution());
+        let frame = match classic {
+            None => render_rect(prepared, settings, &execution, rectangle, &display, cancel, watch),
+            Some(built) => {
+                let caster = built.caster(prepared.geometry().primitives());
+                render_classic(&Classic { prepared, caster }, settings, &execution, rectangle, &display, cancel, watch)
+            }
+        };
+        display.finish();
+        frame.map_err(|_cancelled| Failure::Interrupted)
+    }
 }
 
 fn write(frame: &Frame, scene: &Scene, target: &Target, cancel: &Cancel) -> Result<(), Failure> {
@@ -115,7 +131,7 @@ fn write(frame: &Frame, scene: &Scene, target: &Target, cancel: &Cancel) -> Resu
 fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
-    *duration = start.elapsed();
+    *duration += start.elapsed();
     result
 }
 

@@ -1,6 +1,6 @@
 //! From options to the library's settings: what was not said keeps what the scene says, or the default.
 
-use crate::args::{Crop, ExecutionArguments, PictureArguments};
+use crate::args::{Crop, ExecutionArguments, PictureArguments, WalkChoice};
 use crate::exit::Failure;
 use whitted::render::{Execution, PixelRect};
 use whitted::scene::{Scene, Settings};
@@ -57,7 +57,10 @@ impl ExecutionArguments {
             level: self.simd.unwrap_or(default.level),
             region: self.region.unwrap_or(default.region),
             method: self.render.unwrap_or(default.method),
-            walk: self.walk.unwrap_or(default.walk),
+            walk: match self.walk {
+                Some(WalkChoice::Wide(walk)) => walk,
+                _ => default.walk,
+            },
         }
     }
 

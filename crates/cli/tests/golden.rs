@@ -1,7 +1,7 @@
 //! Every scene of `scenes/` looks as it did when somebody last looked at it.
 //!
 //! Pictures are byte-equal on every CPU and with any number of threads, so the tolerance is zero, and each scene is
-//! rendered in two ways that share as little as possible. After an intended change, run this test with
+//! rendered in three ways that share as little as possible. After an intended change, run this test with
 //! `WHITTED_BLESS=1`, look at the new pictures, and give the reason in the commit.
 
 use std::fs;
@@ -13,6 +13,16 @@ const SIZE: [usize; 2] = [128, 96];
 
 /// One thread with scalar lanes, and two with the widest that the machine has.
 const WAYS: [&[&str]; 2] = [&["--simd", "scalar", "--threads", "1"], &["--threads", "2"]];
+
+/// The paper's renderer, which shares even less with them: each scene is rendered by one of these as well.
+const CLASSIC_WAYS: [&[&str]; 6] = [
+    &["--render", "recursive", "--tree", "kd8", "--walk", "sequential"],
+    &["--render", "recursive", "--tree", "grid", "--math", "sse"],
+    &["--render", "recursive", "--tree", "kd8", "--math", "sse"],
+    &["--render", "recursive", "--tree", "median"],
+    &["--render", "recursive", "--tree", "median", "--walk", "sequential", "--math", "sse"],
+    &["--render", "recursive", "--tree", "grid"],
+];
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
@@ -60,22 +70,23 @@ fn report(name: &str, actual: &[u8], golden: &[u8]) -> String {
 fn scenes_look_as_they_did() {
     let bless = std::env::var_os("WHITTED_BLESS").is_some();
     let mut complaints = Vec::new();
-    for entry in fs::read_dir(scenes()).unwrap() {
+    for (number, entry) in fs::read_dir(scenes()).unwrap().enumerate() {
         let scene = entry.unwrap().path();
         if scene.extension().is_none_or(|extension| extension != "toml") {
             continue;
         }
         let name = scene.file_stem().unwrap().to_string_lossy().into_owned();
         let golden = scenes().join("golden").join(format!("{name}.png"));
+        let ways = [WAYS[0], WAYS[1], CLASSIC_WAYS[number % CLASSIC_WAYS.len()]];
         let pictures = std::thread::scope(|scope| {
-            WAYS.map(|way| scope.spawn(|| render(&scene, way))).map(|thread| thread.join().unwrap())
+            ways.map(|way| scope.spawn(|| render(&scene, way))).map(|thread| thread.join().unwrap())
         });
         if bless {
             fs::write(&golden, &pictures[0]).unwrap();
         }
         let golden = fs::read(&golden).unwrap_or_else(|error| panic!("{}: {error}", golden.display()));
         let golden = decode(&golden);
-        for (way, picture) in WAYS.iter().zip(&pictures) {
+        for (way, picture) in ways.iter().zip(&pictures) {
             let actual = decode(picture);
             if actual != golden {
                 complaints.push(format!("{}: {}", way.join(" "), report(&name, &actual, &golden)));

@@ -3,7 +3,7 @@
 use crate::{F32Lanes, Simd};
 use std::ops::{Add, Mul, Sub};
 
-/// `(x, y, z, w)`, aligned for its register. Directions have `w = 0`, so that [`dot`](Self::dot) is that of three.
+/// `(x, y, z, w)`, aligned for its register.
 ///
 /// With [`Scalar`](crate::Scalar) it is the plain twin that the register version is measured against (the paper's
 /// Tables 3 and 4). The renderer's production walks give each lane another ray or box instead.
@@ -28,10 +28,12 @@ impl<S: Simd> Vec4<S> {
         components
     }
 
-    /// `(x·x' + z·z') + (y·y' + w·w')`, in this order.
+    /// `(x·x' + y·y') + z·z'`: bit by bit the dot product of plain arithmetic; `w` does not count.
     #[inline(always)]
     pub fn dot(self, other: Self) -> f32 {
-        (self.0 * other.0).reduce_add()
+        let products = self.0 * other.0;
+        let turned = self.1.yzx(products);
+        Self(products + turned + self.1.yzx(turned), self.1).components()[0]
     }
 
     /// The cross product of the first three components; `w` is 0 if that of both operands is finite.
@@ -53,11 +55,7 @@ impl<S: Simd> Vec4<S> {
     /// bits on different CPUs*; NaN for the zero vector.
     #[inline(always)]
     pub fn normalize_approx(self) -> Self {
-        let squared = self.length_squared();
-        let estimate = squared.rsqrt_approx();
-        let c = |value| S::F32x4::splat(self.1, value);
-        let refined = estimate * (c(1.5) - c(0.5) * squared * estimate * estimate);
-        Self(self.0 * refined, self.1)
+        Self(self.0 * Self(self.length_squared(), self.1).rsqrt_refined(), self.1)
     }
 
     /// Unit vector by the hardware's estimate of `1/√x` alone: length off by 1.5·2⁻¹² at most, *different bits on
@@ -67,9 +65,32 @@ impl<S: Simd> Vec4<S> {
         Self(self.0 * self.length_squared().rsqrt_approx(), self.1)
     }
 
+    /// The square root of each component by the hardware's estimate of `1/√x` and one Newton step: off by 2⁻²⁰ at most,
+    /// *different bits on different CPUs*; NaN for zero and below.
+    #[inline(always)]
+    pub fn sqrt_approx(self) -> Self {
+        Self(self.0 * self.rsqrt_refined(), self.1)
+    }
+
+    /// The estimate of `1/√x` after one Newton step, which doubles its twelve bits.
+    #[inline(always)]
+    fn rsqrt_refined(self) -> S::F32x4 {
+        let estimate = self.0.rsqrt_approx();
+        let c = |value| S::F32x4::splat(self.1, value);
+        estimate * (c(1.5) - c(0.5) * self.0 * estimate * estimate)
+    }
+
     #[inline(always)]
     fn length_squared(self) -> S::F32x4 {
         S::F32x4::splat(self.1, self.dot(self))
+    }
+}
+
+impl<S: Simd> Mul<f32> for Vec4<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, scale: f32) -> Self {
+        Self(self.0 * S::F32x4::splat(self.1, scale), self.1)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! # What this crate knows
 //! Rays, primitives, trees, surfaces, scenes and the render loop, in this order of layers:
-//! [`math`] ← [`ray`] ← [`geometry`] ← { [`tree`], [`shading`] } ← { [`scene`], [`query`] } ← [`render`].
+//! [`math`] ← [`ray`] ← [`geometry`] ← { [`tree`], [`shading`] } ← { [`scene`], [`query`], [`classic`] } ← [`render`].
 //!
 //! # Where to begin
 //! * To ask what rays hit: [`query::RayScene`].
@@ -17,6 +17,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), deny(clippy::disallowed_methods, clippy::print_stdout, clippy::print_stderr))]
 
+pub mod classic;
 pub mod geometry;
 pub mod math;
 pub mod query;

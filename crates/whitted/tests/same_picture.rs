@@ -3,7 +3,11 @@
 mod random_scene;
 
 use random_scene::random_scene;
-use whitted::render::{Cancel, Execution, Frame, Method, PixelRect, Region, Silent, Unwatched, render, render_rect};
+use whitted::classic::{Caster, Grid, KdTree, Math, Objects, Split, Structure, TriangleTest, Walk};
+use whitted::render::{
+    Cancel, Classic, Execution, Frame, Method, PixelRect, Region, Silent, Unwatched, render, render_classic,
+    render_rect,
+};
 use whitted::scene::{Antialias, Prepared, Scene, Settings, Shadows};
 use whitted::tree::{BuildOptions, TreeKind, WalkKind};
 
@@ -104,6 +108,33 @@ fn instruction_sets_walks_and_trees_do_not_matter() {
                     let found = picture(&prepared, &settings, &Execution { level, walk, ..Execution::default() });
                     assert_same(&expected, &found, &format!("scene {seed}, {kind:?}, {}, {walk:?}", level.name()));
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_papers_structures_walks_and_arithmetic_do_not_matter() {
+    for seed in 90..100 {
+        let (scene, settings) = (random_scene(seed), settings(seed));
+        let prepared = prepare(&scene, TreeKind::None);
+        let expected = picture(&prepared, &settings, &Execution::default());
+        let primitives = prepared.geometry().primitives();
+        let objects = Objects::new(primitives, TriangleTest::Watertight);
+        let kd = |split| Structure::Kd(KdTree::build(primitives, split));
+        for (structure, walk) in [
+            (Structure::Naive, Walk::Stack),
+            (kd(Split::Sah), Walk::Sequential),
+            (kd(Split::Sah), Walk::Stack),
+            (kd(Split::Median), Walk::Sequential),
+            (Structure::Grid(Grid::build(primitives)), Walk::Stack),
+        ] {
+            for math in [Math::Scalar, Math::sse()] {
+                let caster = Caster { primitives, objects: &objects, structure: &structure, walk, math };
+                let (classic, execution) = (Classic { prepared: &prepared, caster }, Execution::default());
+                let (rect, cancel) = (PixelRect::whole(settings.size), Cancel::new());
+                let found = render_classic(&classic, &settings, &execution, &rect, &Silent, &cancel, &Unwatched);
+                assert_same(&expected, &found.expect("not cancelled"), &format!("scene {seed}, {walk:?}, {math:?}"));
             }
         }
     }

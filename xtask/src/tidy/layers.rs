@@ -7,7 +7,7 @@ const LIBRARY: &str = "crates/whitted/src/";
 
 /// The library's modules by layer: a module may name its own and every lower layer, never a neighbour or a higher one.
 const LAYERS: &[&[&str]] =
-    &[&["math"], &["ray"], &["geometry"], &["tree", "shading"], &["scene", "query"], &["render"]];
+    &[&["math"], &["ray"], &["geometry"], &["tree", "shading"], &["scene", "query", "classic"], &["render"]];
 
 /// Each crate with the crates of this workspace that it may depend on.
 const CRATES: &[(&str, &[&str])] = &[

@@ -7,7 +7,7 @@ use simd::{Kernel, Level, Scalar, Simd, Vec4, dispatch};
 struct All([f32; 4], [f32; 4]);
 
 impl Kernel for All {
-    type Output = ([[f32; 4]; 6], [f32; 2]);
+    type Output = ([[f32; 4]; 7], [f32; 3]);
     #[inline(always)]
     fn run<S: Simd>(self, token: S) -> Self::Output {
         assert_eq!((size_of::<Vec4<S>>(), align_of::<Vec4<S>>()), (16, 16));
@@ -19,17 +19,22 @@ impl Kernel for All {
             a.cross(b).components(),
             a.normalize().components(),
             [a.dot(b); 4],
+            (a * 3.5).components(),
         ];
         let [newton, raw] = [a.normalize_approx(), a.normalize_rsqrt()];
-        (exact, [newton.dot(newton).sqrt(), raw.dot(raw).sqrt()])
+        let root = (a * a).sqrt_approx().components()[0] / self.0[0].abs();
+        (exact, [newton.dot(newton).sqrt(), raw.dot(raw).sqrt(), root])
     }
 }
 
 fn check(level: Level, a: [f32; 4], b: [f32; 4]) {
-    let (found, [newton, raw]) = dispatch(level, All(a, b));
+    let (found, [newton, raw, root]) = dispatch(level, All(a, b));
     let (expected, _) = All(a, b).run(Scalar);
+    let [[x, y, z, _], [p, q, r, _]] = [a, b];
+    assert_eq!(found[5][0], x * p + y * q + z * r, "{level} {a:?} {b:?}");
     assert_eq!(found, expected, "{level} {a:?} {b:?}");
     assert!((newton - 1.0).abs() <= 1.0 / 1_048_576.0, "{level} {a:?}: {newton}");
+    assert!((root - 1.0).abs() <= 1.0 / 1_048_576.0, "{level} {a:?}: {root}");
     assert!((raw - 1.0).abs() <= 1.5 / 4096.0, "{level} {a:?}: {raw}");
 }
 

@@ -2,6 +2,7 @@
 
 use super::execution::Execution;
 use super::progress::Cancel;
+use crate::classic::Caster;
 use crate::math::Vec3f;
 use crate::scene::{CameraRays, Geometry, Look, Prepared, Settings};
 use crate::tree::Query;
@@ -17,6 +18,8 @@ pub(super) struct Context<'a> {
     pub(super) camera: CameraRays,
     /// The tree, with the walk and instruction set that were asked for.
     pub(super) query: Query<'a>,
+    /// What the recursive renderer asks instead of the tree.
+    pub(super) caster: Option<Caster<'a>>,
 }
 
 impl<'a> Context<'a> {
@@ -34,7 +37,7 @@ impl<'a> Context<'a> {
             walk: execution.walk,
         };
         let camera = CameraRays::new(prepared.look().camera(), settings.size, settings.sampling);
-        Self { geometry, look: prepared.look(), settings, execution, cancel, camera, query }
+        Self { geometry, look: prepared.look(), settings, execution, cancel, camera, query, caster: None }
     }
 
     /// The material number of a primitive.

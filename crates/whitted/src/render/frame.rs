@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::edges::{EdgeRule, flagged};
-use super::execution::Execution;
+use super::execution::{Execution, Method};
 use super::first_pass::{FirstPass, FirstSample};
 use super::image::Image;
 use super::probe::{Phase, Probe, Unwatched, watched};
@@ -10,6 +10,7 @@ use super::progress::{Cancel, Cancelled, Progress};
 use super::region::PixelRect;
 use super::statistics::Statistics;
 use super::workspace::{Refined, Workspaces};
+use crate::classic::Caster;
 use crate::scene::{Antialias, Prepared, Settings};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -64,18 +65,53 @@ pub fn render_rect<P: Probe>(
     cancel: &Cancel,
     probe: &P,
 ) -> Result<Frame, Cancelled> {
-    let rect = rect.intersection(&PixelRect::whole(settings.size));
+    let context = Context::new(prepared, settings, execution, cancel);
+    render_in(context, rect, progress, probe)
+}
+
+/// A scene with the paper's structures.
+#[derive(Clone, Copy, Debug)]
+pub struct Classic<'a> {
+    /// The scene; its tree is not used.
+    pub prepared: &'a Prepared,
+    /// Finds what rays hit, among the primitives of `prepared`.
+    pub caster: Caster<'a>,
+}
+
+/// As [`render_rect`], recursively and with the paper's structures, whatever method and walk `execution` says.
+///
+/// The pixels are the same, unless triangles are tested by projection.
+///
+/// # Errors
+/// If `cancel` was set before the picture was finished.
+pub fn render_classic<P: Probe>(
+    classic: &Classic<'_>,
+    settings: &Settings,
+    execution: &Execution,
+    rect: &PixelRect,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+    probe: &P,
+) -> Result<Frame, Cancelled> {
+    let execution = Execution { method: Method::Recursive, ..*execution };
+    let context = Context::new(classic.prepared, settings, &execution, cancel);
+    let context = Context { caster: Some(classic.caster), ..context };
+    render_in(context, rect, progress, probe)
+}
+
+fn render_in<P: Probe>(
+    context: Context<'_>,
+    rect: &PixelRect,
+    progress: &dyn Progress,
+    probe: &P,
+) -> Result<Frame, Cancelled> {
+    let rect = rect.intersection(&PixelRect::whole(context.settings.size));
     if rect.is_empty() {
         let nothing = FirstPass::new(PixelRect::EMPTY);
         return Ok(Frame::of(nothing, rect, Statistics::default(), Statistics::default()));
     }
-    let job = Job {
-        context: Context::new(prepared, settings, execution, cancel),
-        rule: EdgeRule::new(settings),
-        progress,
-        probe,
-        workspaces: Workspaces::default(),
-    };
+    let rule = EdgeRule::new(context.settings);
+    let job = Job { context, rule, progress, probe, workspaces: Workspaces::default() };
     let (pass, statistics, apron) = job.first_pass(&rect)?;
     let refined = if job.rule.never() { Vec::new() } else { job.refine(&pass, &rect)? };
     let mut frame = Frame::of(pass, rect, statistics, apron);

@@ -25,6 +25,7 @@ mod rows;
 mod samples;
 mod scatter;
 mod shadow;
+mod source;
 mod statistics;
 mod vertex;
 mod wavefront;
@@ -32,7 +33,7 @@ mod workspace;
 
 pub use execution::{Execution, Method, Region};
 pub use first_pass::FirstSample;
-pub use frame::{Frame, render, render_rect};
+pub use frame::{Classic, Frame, render, render_classic, render_rect};
 pub use image::Image;
 pub use probe::{Phase, Probe, Unwatched};
 pub use progress::{Cancel, Cancelled, Progress, Silent};

@@ -1,4 +1,5 @@
-//! The paper's renderer: one ray after the other, depth first. The oracle of the wavefront.
+//! The paper's renderer: one ray after the other, depth first. The oracle of the wavefront, and what the paper's own
+//! structures and walks are measured in ([`classic`](crate::classic)).
 //!
 //! It calls the same functions for surfaces and lights with a single lane, and none of the queueing: every ray is a
 //! batch of one. The recursion is a loop over an explicit stack, so that no depth can exhaust that of the machine.
@@ -9,14 +10,15 @@ use super::progress::Cancelled;
 use super::queue::TaggedRays;
 use super::samples::Samples;
 use super::shadow::{BEFORE_ALL, MAX_FILTERS, opaque_primitives};
+use super::source::{Alone, Production, Source};
 use super::vertex::Vertex;
 use super::wavefront::camera_tag;
 use super::workspace::Places;
 use crate::geometry::surfaces::Surfaces;
 use crate::math::Vec3f;
-use crate::ray::{Hit, HitBatch, Ray};
+use crate::ray::Ray;
 use crate::shading::one::{One, one, ones, value, values};
-use crate::tree::{Occlusion, Scratch};
+use crate::tree::Occlusion;
 use simd::{MaskLanes, Scalar, ScalarU32, U32Lanes};
 
 /// A ray that waits, and its generation.
@@ -26,9 +28,15 @@ type Waiting = (TaggedRays<One>, u32);
 #[derive(Debug, Default)]
 pub(super) struct Recursive {
     stack: Vec<Waiting>,
-    hit: HitBatch,
-    occlusion: Vec<Occlusion>,
-    scratch: Scratch,
+    alone: Alone,
+}
+
+/// A batch under way.
+struct Run<'a, H> {
+    context: &'a Context<'a>,
+    source: H,
+    stack: &'a mut Vec<Waiting>,
+    samples: &'a mut Samples,
 }
 
 impl Recursive {
@@ -37,29 +45,40 @@ impl Recursive {
     /// # Errors
     /// If the render was cancelled.
     pub(super) fn run(&mut self, context: &Context, places: &Places, samples: &mut Samples) -> Result<(), Cancelled> {
+        let Self { stack, alone } = self;
+        match context.caster {
+            Some(source) => Run { context, source, stack, samples }.all(places),
+            None => Run { context, source: Production { query: context.query, alone }, stack, samples }.all(places),
+        }
+    }
+}
+
+impl<H: Source> Run<'_, H> {
+    fn all(&mut self, places: &Places) -> Result<(), Cancelled> {
         for index in 0..places.len() {
             let ([x, y], sample) = places.load::<One>(Scalar, index);
-            let Ray { origin, direction, .. } = context.camera.ray(value(x), value(y));
+            let Ray { origin, direction, .. } = self.context.camera.ray(value(x), value(y));
             let tag = camera_tag(Scalar, sample);
             self.stack.clear();
             self.stack.push((TaggedRays { origin: ones(origin), direction: ones(direction), tag }, 0));
             while let Some((ray, generation)) = self.stack.pop() {
-                if context.cancel.is_cancelled() {
+                if self.context.cancel.is_cancelled() {
                     return Err(Cancelled);
                 }
-                self.visit(context, &ray, generation, samples);
+                self.visit(&ray, generation);
             }
         }
         Ok(())
     }
 
-    fn visit(&mut self, context: &Context, rays: &TaggedRays<One>, generation: u32, samples: &mut Samples) {
+    fn visit(&mut self, rays: &TaggedRays<One>, generation: u32) {
+        let context = self.context;
         let (all, sample) = (MaskLanes::from_bits(Scalar, 1), rays.tag.sample);
         let ray = Ray::new(values(rays.origin), values(rays.direction));
-        let hit = self.closest_hit(context, &ray, samples);
+        let hit = self.source.closest_hit(&ray, &mut self.samples.statistics);
         if !hit.is_hit() {
             let light = context.look.background(Scalar, rays.direction);
-            samples.add_lanes(all, sample, light.times(rays.tag.weight));
+            self.samples.add_lanes(all, sample, light.times(rays.tag.weight));
             return;
         }
         let point = context.geometry.primitives().surface_point(&ray, &hit);
@@ -68,19 +87,19 @@ impl Recursive {
         let hit = (one(hit.t), ScalarU32::splat(Scalar, hit.primitive));
         let vertex = Vertex::new(Scalar, context, all, rays, hit, &surface);
         if generation == 0 {
-            vertex.note_first(Scalar, context, samples);
+            vertex.note_first(Scalar, context, self.samples);
         }
-        samples.add_lanes(all, sample, vertex.ambient(Scalar, context));
+        self.samples.add_lanes(all, sample, vertex.ambient(Scalar, context));
         if vertex.answers_to_lights(Scalar).any() {
             for (light, origin) in context.look.lights() {
                 let sent = vertex.lit().receive(Scalar, light, *origin);
                 if sent.faces.any() {
-                    let light = self.arriving(context, &sent, samples);
-                    samples.add_lanes(all, sample, ones(light));
+                    let light = self.arriving(&sent);
+                    self.samples.add_lanes(all, sample, ones(light));
                 }
             }
         }
-        if let Some(scattered) = vertex.scatter(Scalar, context, generation, samples) {
+        if let Some(scattered) = vertex.scatter(Scalar, context, generation, self.samples) {
             // Pushed last, popped first: the mirrored ray before the refracted one.
             for child in [scattered.refracted, scattered.reflected] {
                 if child.exists.any() {
@@ -90,35 +109,28 @@ impl Recursive {
         }
     }
 
-    fn closest_hit(&mut self, context: &Context, ray: &Ray, samples: &mut Samples) -> Hit {
-        samples.statistics += context.query.closest_hit(ray, &mut self.hit, &mut self.scratch);
-        self.hit.get(0)
-    }
-
     /// What reaches a surface of the light that a lamp sends.
-    fn arriving(&mut self, context: &Context, sent: &Sent<One>, samples: &mut Samples) -> Vec3f {
+    fn arriving(&mut self, sent: &Sent<One>) -> Vec3f {
         let (origin, direction) = (values(sent.origin), values(sent.direction));
         let ray = Ray { origin, direction, t_min: 0.0, t_max: value(sent.t_max) };
-        samples.statistics.shadow_rays += 1;
-        let (opaque, out) = (opaque_primitives(context), &mut self.occlusion);
-        samples.statistics += context.query.occluded(&ray, opaque, out, &mut self.scratch);
-        match self.occlusion[0] {
+        let statistics = &mut self.samples.statistics;
+        statistics.shadow_rays += 1;
+        match self.source.occluded(&ray, opaque_primitives(self.context), statistics) {
             Occlusion::Clear => values(sent.light),
-            Occlusion::Filtered => self.filtered(context, &ray, values(sent.light), samples),
+            Occlusion::Filtered => self.filtered(&ray, values(sent.light)),
             Occlusion::Blocked => Vec3f::ZERO,
         }
     }
 
     /// `light` after all surfaces on the way of a ray.
-    fn filtered(&mut self, context: &Context, ray: &Ray, mut light: Vec3f, samples: &mut Samples) -> Vec3f {
-        let mut after = [BEFORE_ALL];
+    fn filtered(&mut self, ray: &Ray, mut light: Vec3f) -> Vec3f {
+        let mut after = BEFORE_ALL;
         for _ in 0..MAX_FILTERS {
-            samples.statistics += context.query.next_hit(ray, &mut after, &mut self.hit, &mut self.scratch);
-            let hit = self.hit.get(0);
+            let hit = self.source.next_hit(ray, &mut after, &mut self.samples.statistics);
             if !hit.is_hit() {
                 return light;
             }
-            light = light.times(context.filter(hit.primitive));
+            light = light.times(self.context.filter(hit.primitive));
         }
         Vec3f::ZERO
     }

@@ -4,7 +4,7 @@
 //! * There is one definition of a hit, in [`geometry`](crate::geometry): every walk offers the same candidates with
 //!   bit-equal t to a goal that prefers the smaller (t, primitive), so the answer depends on neither tree, walk,
 //!   instruction set nor order.
-//! * Boxes are padded so that no candidate is lost to rounding (`wide::PADDING`).
+//! * Boxes are padded so that no candidate is lost to rounding (`fit::PADDING`).
 //! * References, depth and memory are bounded for any input.
 
 mod all_hits;
@@ -13,6 +13,7 @@ mod brute_force;
 mod build;
 mod expected_cost;
 mod filter;
+mod fit;
 mod goal;
 mod leaf;
 mod node;
@@ -29,6 +30,11 @@ pub use goal::Occlusion;
 pub use query::{Counts, Query, Scratch};
 pub use refit::RefitError;
 pub use wide::{Tree, TreeReport};
+
+pub(crate) use build::{Bounds, Solid};
+pub(crate) use fit::Fit;
+pub(crate) use goal::{Any, Closest, Goal, Next};
+pub(crate) use walk::offer_crossings;
 
 /// Which splits the builder may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

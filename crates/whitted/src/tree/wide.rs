@@ -1,26 +1,13 @@
 //! The production tree: wide nodes over leaf blocks.
 
 use super::build::{self, BuildOptions};
+use super::fit::Fit;
 use super::leaf::{LeafKind, Leaves};
 use super::node::{Child, ChildKind, Node};
 use super::{TreeKind, validate};
 use crate::geometry::Primitives;
 use crate::math::Aabb;
 use simd::F32Lanes;
-
-/// Boxes grow by this times the largest coordinate of the scene.
-///
-/// A candidate's t and its place in sheared space are wrong by at most 32·2⁻²⁴ of (largest coordinate of the scene +
-/// that of the ray's origin): [`ERROR_ULPS`](crate::geometry::triangle::ERROR_ULPS) for triangles, and for spheres a
-/// sum of the same kind with Euclidean instead of largest distances. This padding covers origins up to three times
-/// the largest coordinate; rays from farther away carry the rest as a slack of their own ([`slack`]).
-const PADDING: f32 = 128.0 / (1 << 24) as f32;
-
-/// See [`PADDING`].
-const ERROR: f32 = 32.0 / (1 << 24) as f32;
-
-/// [`ERROR`], and the rounding of slopes and plane distances: eight operations of half an ulp on either side.
-const PACKET_ERROR: f32 = 40.0 / (1 << 24) as f32;
 
 /// The tree over a scene's bounded primitives, with its own copy of their coordinates.
 ///
@@ -31,8 +18,7 @@ pub struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) leaves: Leaves,
     kind: TreeKind,
-    scale: f32,
-    max_coordinate: f32,
+    fit: Fit,
     report: TreeReport,
 }
 
@@ -60,13 +46,11 @@ impl Tree {
             nodes: Vec::new(),
             leaves: Leaves::default(),
             kind: options.kind,
-            scale: 1.0,
-            max_coordinate: 0.0,
+            fit: Fit::new(primitives.bounds()),
             report: TreeReport::default(),
         };
-        tree.fit_scale(primitives.bounds());
         if options.kind != TreeKind::None {
-            let flat = build::build(primitives, tree.scale, tree.padding(), options);
+            let flat = build::build(primitives, tree.fit.scale(), tree.fit.padding(), options);
             (tree.nodes, tree.leaves, tree.report) = (flat.nodes, flat.leaves, flat.report);
         }
         tree.report.bytes = size_of_val(&tree.nodes[..]) + tree.leaves.bytes();
@@ -75,18 +59,12 @@ impl Tree {
 
     /// Choose the scale for a scene of these bounds.
     pub(super) fn fit_scale(&mut self, bounds: Aabb) {
-        self.scale = power_of_two_scale(bounds.max_abs());
-        self.max_coordinate = bounds.max_abs() * self.scale;
-    }
-
-    /// By how much boxes grow.
-    fn padding(&self) -> f32 {
-        PADDING * self.max_coordinate
+        self.fit = Fit::new(bounds);
     }
 
     /// The box of a lane around what lies within `bounds`, in the tree's coordinates.
     pub(super) fn padded(&self, bounds: Aabb) -> Aabb {
-        bounds.grown(self.padding())
+        bounds.grown(self.fit.padding())
     }
 
     /// Which splits were allowed.
@@ -99,28 +77,25 @@ impl Tree {
         self.report
     }
 
-    /// The factor from the caller's coordinates to the tree's.
+    /// See [`Fit::scale`].
     pub(super) fn scale(&self) -> f32 {
-        self.scale
+        self.fit.scale()
     }
 
-    /// How far outside its padded boxes a ray may find what they hold, if the largest coordinate of its origin is
-    /// `distance` (in the tree's coordinates).
+    /// See [`Fit::slack`].
     #[inline(always)]
     pub(super) fn slack<F: F32Lanes>(&self, token: F::Token, distance: F) -> F {
-        let splat_error = F::splat(token, ERROR);
-        let covered = F::splat(token, (PADDING - ERROR) * self.max_coordinate);
-        (splat_error * distance - covered).max(F::splat(token, 0.0))
+        self.fit.slack(token, distance)
     }
 
-    /// As [`slack`](Self::slack) for the planes around a packet, whose own slopes are rounded.
+    /// See [`Fit::packet_slack`].
     pub(super) fn packet_slack(&self, distance: f32) -> f32 {
-        (self.primitive_slack(distance) - PADDING * self.max_coordinate).max(0.0)
+        self.fit.packet_slack(distance)
     }
 
-    /// How far outside a primitive a packet's ray from `distance` away may find it.
+    /// See [`Fit::primitive_slack`].
     pub(super) fn primitive_slack(&self, distance: f32) -> f32 {
-        PACKET_ERROR * (distance + self.max_coordinate)
+        self.fit.primitive_slack(distance)
     }
 
     /// Ask the memory for what a walk will read of `child`.
@@ -146,15 +121,4 @@ impl Tree {
     pub fn validate(&self, primitives: &Primitives) -> Result<(), String> {
         validate::validate(self, primitives)
     }
-}
-
-/// The power of two that brings `max` into [1, 2), kept far from the ends of the exponent range.
-fn power_of_two_scale(max: f32) -> f32 {
-    const EXPONENT_BIAS: i32 = 127;
-    const MAX_SHIFT: i32 = 120;
-    if !(max > 0.0 && max.is_finite()) {
-        return 1.0;
-    }
-    let exponent = (max.max(f32::MIN_POSITIVE).to_bits() >> 23) as i32 - EXPONENT_BIAS;
-    f32::from_bits(((EXPONENT_BIAS - exponent.clamp(-MAX_SHIFT, MAX_SHIFT)) as u32) << 23)
 }

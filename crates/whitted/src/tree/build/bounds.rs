@@ -6,13 +6,13 @@ use simd::{F32Lanes, Simd};
 /// A box: lower corner, tag, negated upper corner, unused.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(in crate::tree) struct Bounds([f32; 8]);
+pub(crate) struct Bounds([f32; 8]);
 
 impl Bounds {
     /// The box that contains nothing.
     pub(super) const EMPTY: Self = Self([f32::INFINITY; 8]);
 
-    pub(super) fn new(bounds: Aabb) -> Self {
+    pub(crate) fn new(bounds: Aabb) -> Self {
         let (lo, hi) = (bounds.lo, bounds.hi);
         Self([lo.x, lo.y, lo.z, 0.0, -hi.x, -hi.y, -hi.z, 0.0])
     }
@@ -27,7 +27,7 @@ impl Bounds {
         self.0[3].to_bits()
     }
 
-    pub(in crate::tree) fn to_aabb(self) -> Aabb {
+    pub(crate) fn to_aabb(self) -> Aabb {
         let [lx, ly, lz, _, hx, hy, hz, _] = self.0;
         Aabb::new([lx, ly, lz].into(), [-hx, -hy, -hz].into())
     }
@@ -107,12 +107,12 @@ impl Bounds {
     }
 
     #[inline(always)]
-    pub(super) fn lo(&self, axis: usize) -> f32 {
+    pub(crate) fn lo(&self, axis: usize) -> f32 {
         self.0[axis]
     }
 
     #[inline(always)]
-    pub(super) fn hi(&self, axis: usize) -> f32 {
+    pub(crate) fn hi(&self, axis: usize) -> f32 {
         -self.0[4 + axis]
     }
 

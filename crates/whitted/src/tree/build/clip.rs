@@ -2,13 +2,12 @@
 //!
 //! In the tree's scale and in `f32`: an edge point is off by a few ulp, which the padding of the boxes covers.
 
-use super::reference::Reference;
-use super::{Bounds, Builder};
-use crate::geometry::Kind;
+use super::Bounds;
+use crate::geometry::{Kind, Primitives};
 
 /// A primitive in the form in which it is clipped.
 #[derive(Clone, Copy)]
-pub(super) enum Solid {
+pub(crate) enum Solid {
     Triangle([[f32; 3]; 3]),
     Sphere {
         center: [f32; 3],
@@ -18,26 +17,24 @@ pub(super) enum Solid {
     Boxed,
 }
 
-impl Builder<'_> {
-    pub(super) fn solid(&self, reference: &Reference) -> Solid {
-        match self.primitives.kind(reference.primitive()) {
-            Kind::Triangle(i) => {
-                Solid::Triangle(self.primitives.triangle(i).vertices.map(|v| (v * self.scale).to_array()))
-            }
+impl Solid {
+    /// Primitive `id` in coordinates multiplied by `scale`.
+    #[inline(always)]
+    pub(crate) fn new(primitives: &Primitives, id: u32, scale: f32) -> Self {
+        match primitives.kind(id) {
+            Kind::Triangle(i) => Self::Triangle(primitives.triangle(i).vertices.map(|v| (v * scale).to_array())),
             Kind::Sphere(i) => {
-                let sphere = self.primitives.spheres()[i];
-                Solid::Sphere { center: (sphere.center * self.scale).to_array(), radius: sphere.radius * self.scale }
+                let sphere = primitives.spheres()[i];
+                Self::Sphere { center: (sphere.center * scale).to_array(), radius: sphere.radius * scale }
             }
-            Kind::Shape(_) | Kind::Plane(_) => Solid::Boxed,
+            Kind::Shape(_) | Kind::Plane(_) => Self::Boxed,
         }
     }
-}
 
-impl Solid {
-    /// The box of the part of a reference that lies between two planes across `axis`; may be empty.
+    /// The box of the part that lies in `bounds` and between two planes across `axis`; may be empty.
     #[inline(always)]
-    pub(super) fn slab(&self, reference: &Reference, axis: usize, lo: f32, hi: f32) -> Bounds {
-        let mut cut = *reference.bounds();
+    pub(crate) fn slab(&self, bounds: &Bounds, axis: usize, lo: f32, hi: f32) -> Bounds {
+        let mut cut = *bounds;
         cut.set_lo(axis, cut.lo(axis).max(lo));
         cut.set_hi(axis, cut.hi(axis).min(hi));
         match self {

@@ -26,7 +26,8 @@ use super::leaf::{BLOCK, LeafKind};
 use super::node::MAX_LEAF_BLOCKS;
 use crate::geometry::{Kind, Primitives};
 use binary::{BinaryNode, Content};
-pub(super) use bounds::Bounds;
+pub(crate) use bounds::Bounds;
+pub(crate) use clip::Solid;
 pub(super) use cost::WIDE_NODE as WIDE_NODE_COST;
 pub(super) use flatten::Flat;
 use object_split::ObjectSplit;
@@ -326,6 +327,11 @@ impl Builder<'_> {
         nodes.push(BinaryNode { bounds: bounds.to_aabb(), content });
         let costs = [bounds.half_area() * cost::blocks(count); _];
         Grown { bounds, costs, leaves: 1, references: count, kind: Some(kind), nodes: 1 }
+    }
+
+    #[inline(always)]
+    fn solid(&self, reference: &Reference) -> Solid {
+        Solid::new(self.primitives, reference.primitive(), self.scale)
     }
 
     fn kind(&self, reference: &Reference) -> LeafKind {

@@ -161,10 +161,10 @@ impl<S: Simd> Bins<S> {
             Solid::Boxed => {}
         }
         if is_cut_below {
-            self.include(token, planes.bin(lo), &solid.slab(reference, axis, lo, lo));
+            self.include(token, planes.bin(lo), &solid.slab(reference.bounds(), axis, lo, lo));
         }
         if is_cut_above {
-            self.include(token, planes.bin(hi), &solid.slab(reference, axis, hi, hi));
+            self.include(token, planes.bin(hi), &solid.slab(reference.bounds(), axis, hi, hi));
         }
     }
 
@@ -259,8 +259,8 @@ pub(super) fn cut(
 /// The boxes of the parts of a reference below and above a plane; a part may be empty, never both.
 fn halves(builder: &Builder<'_>, reference: &Reference, axis: usize, position: f32) -> (Bounds, Bounds) {
     let solid = builder.solid(reference);
-    let left = solid.slab(reference, axis, f32::NEG_INFINITY, position);
-    let right = solid.slab(reference, axis, position, f32::INFINITY);
+    let left = solid.slab(reference.bounds(), axis, f32::NEG_INFINITY, position);
+    let right = solid.slab(reference.bounds(), axis, position, f32::INFINITY);
     if !(left.is_empty() && right.is_empty()) {
         return (left, right);
     }

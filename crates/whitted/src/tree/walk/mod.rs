@@ -123,7 +123,7 @@ fn shapes<G: Goal>(walk: &mut Walk<'_, G>, index: usize, blocks: std::ops::Range
 }
 
 /// Offer crossings, rounded to `f32`, from `t_min` on: the first, or all if the goal wants every one.
-pub(super) fn offer_crossings<G: Goal>(
+pub(crate) fn offer_crossings<G: Goal>(
     goal: &mut G,
     index: usize,
     id: u32,
