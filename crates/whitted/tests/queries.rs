@@ -152,7 +152,7 @@ fn many_threads_ask_one_scene() {
     let mut rng = SplitMix64::new(7);
     let geometries = geometries(&mut rng);
     let scene = builder(&geometries).build().expect("sound");
-    let rays = rays(&mut rng, 5000);
+    let rays = rays(&mut rng, 20_000);
     let batch: RayBatch = rays.iter().collect();
     let expected: Vec<Option<Hit>> = rays.iter().map(|ray| scene.closest_hit(ray)).collect();
     std::thread::scope(|scope| {

@@ -182,6 +182,23 @@ impl Primitives {
         Triangle { vertices: self.triangles[index].map(|vertex| self.vertices[vertex as usize]) }
     }
 
+    /// Ask the memory for a triangle's vertex numbers or a sphere; nothing for any other number.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, id: u32) {
+        match id.checked_sub(self.first_sphere()) {
+            None => simd::prefetch(&self.triangles, id as usize),
+            Some(sphere) => simd::prefetch(&self.spheres, sphere as usize),
+        }
+    }
+
+    /// Ask the memory for the corners of a triangle; nothing for any other number.
+    #[inline(always)]
+    pub(crate) fn prefetch_corners(&self, id: u32) {
+        for &vertex in self.triangles.get(id as usize).into_iter().flatten() {
+            simd::prefetch(&self.vertices, vertex as usize);
+        }
+    }
+
     /// The vertices of all meshes, one after the other.
     pub fn vertices(&self) -> &[Vec3f] {
         &self.vertices

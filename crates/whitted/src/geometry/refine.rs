@@ -37,6 +37,22 @@ pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: Rays<'_>, hits: &
     }
 }
 
+/// With more primitives than this, the hits' corners are not in the nearer caches.
+const MANY: usize = 1 << 17;
+
+/// Ask the memory for the primitives of hits that come soon, those of `found` being next.
+#[inline(always)]
+fn prefetch(primitives: &Primitives, found: &[u32]) {
+    // Far enough to hide a read from memory: corners are known only when the triangle is there.
+    const AHEAD: usize = 24;
+    for &id in found.get(2 * AHEAD..2 * AHEAD + STEP).unwrap_or_default() {
+        primitives.prefetch(id);
+    }
+    for &id in found.get(AHEAD..AHEAD + STEP).unwrap_or_default() {
+        primitives.prefetch_corners(id);
+    }
+}
+
 struct Refine<'a, 'h> {
     primitives: &'a Primitives,
     rays: Rays<'a>,
@@ -53,7 +69,11 @@ impl Kernel for Refine<'_, '_> {
         let triangles = ids::<S>(token, primitives.triangle_count());
         let first_sphere = ids::<S>(token, primitives.first_sphere() as usize);
         let spheres = ids::<S>(token, primitives.spheres().len());
+        let are_many = primitives.len() > MANY;
         for start in range.clone().step_by(STEP) {
+            if are_many {
+                prefetch(primitives, &hits.primitive[start..range.end]);
+            }
             let step = start..range.end.min(start + STEP);
             let found = load_ids(token, &hits.primitive[step.clone()]);
             let is_triangle = found.lt(triangles);

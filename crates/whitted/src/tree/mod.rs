@@ -57,7 +57,7 @@ pub enum WalkKind {
     /// are streamed, short lists of them ray by ray in turns.
     #[default]
     Auto,
-    /// Lists of up to 4096 rays pushed through the tree together.
+    /// Lists of up to 16 384 rays pushed through the tree together.
     Stream,
     /// One ray after the other.
     Single,

@@ -48,7 +48,10 @@ pub struct Scratch {
 }
 
 /// Rays that are walked together; ray numbers within such a chunk fit 16 bits.
-pub(super) const CHUNK: usize = 4096;
+///
+/// The more there are, the longer do lists stay long: 16 384 instead of 4096 are worth 2–10 % for mirror and diffuse rays
+/// and 10–30 % for random ones, while their records still fit a cache. 32 768 gain nothing more, 65 536 lose.
+pub(super) const CHUNK: usize = 16384;
 
 impl Query<'_> {
     /// The first hit of each ray; `hits` becomes as long as `rays`.

@@ -9,7 +9,7 @@ mod slabs;
 mod stream;
 
 pub(super) use prepared::PreparedRays;
-use prepared::Records;
+use prepared::{Packets, Records};
 pub(super) use stream::Lists;
 
 use super::goal::Goal;
@@ -50,16 +50,17 @@ impl<G: Goal> Kernel for Walk<'_, G> {
 impl<G: Goal> Walk<'_, G> {
     /// Walk what makes packets; returns them as bits. The rest needs records.
     #[inline(always)]
-    fn packets<S: Simd>(&mut self, token: S, counts: &mut Counts) -> u64 {
+    fn packets<S: Simd>(&mut self, token: S, counts: &mut Counts) -> Packets {
         // A packet offers each primitive once, and shapes are not its business.
         if self.kind != WalkKind::Auto || G::EVERY_CROSSING || !self.primitives.shapes().is_empty() {
-            return 0;
+            return Packets::default();
         }
-        let mut walked = 0;
+        let mut walked = Packets::default();
         let mut stack = std::mem::take(&mut self.lists.stack);
         for packet in 0..self.rays.len() / frustum::PACKET {
-            let done = frustum::walk(token, self, &mut stack, packet * frustum::PACKET, counts);
-            walked |= u64::from(done) << packet;
+            if frustum::walk(token, self, &mut stack, packet * frustum::PACKET, counts) {
+                walked.insert(packet);
+            }
         }
         self.lists.stack = stack;
         walked
@@ -67,11 +68,11 @@ impl<G: Goal> Walk<'_, G> {
 
     /// Make the records of all rays but those in the packets `walked`.
     #[inline(always)]
-    fn record<S: Simd>(&mut self, token: S, walked: u64) {
+    fn record<S: Simd>(&mut self, token: S, walked: Packets) {
         self.rays.reserve_records(self.primitives);
         let from = Records { tree: self.tree, primitives: self.primitives, rays: self.batch, start: self.start };
         for packet in 0..self.rays.packets() {
-            if walked >> packet & 1 == 0 {
+            if !walked.contains(packet) {
                 self.rays.record(token, &from, packet);
             }
         }

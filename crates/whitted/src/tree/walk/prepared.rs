@@ -8,6 +8,7 @@ use crate::geometry::{Primitives, ShearedRay};
 use crate::math::Vec3;
 use crate::ray::{NONE, Ray, Rays, lanes};
 use crate::tree::Tree;
+use crate::tree::query::CHUNK;
 use simd::{F32Lanes, Kernel, Level, MaskLanes, Simd, U32Lanes};
 use std::ops::Range;
 
@@ -67,8 +68,8 @@ pub(in crate::tree) struct PreparedRays {
     len: usize,
     /// Upper ends of the ranges so far, until a ray has its record.
     limit: Vec<f32>,
-    /// Bit `i` is set if the rays `i·PACKET..(i + 1)·PACKET` have their records.
-    recorded: u64,
+    /// The packets whose rays have their records.
+    recorded: Packets,
     pub(super) nodes: Vec<NodeRay>,
     /// As `NodeRay::near`, for the planes where the ray leaves: made larger by the slack. Only where there is any.
     far: Vec<[f32; 3]>,
@@ -81,7 +82,31 @@ pub(in crate::tree) struct PreparedRays {
     any_slack: bool,
 }
 
-const _: () = assert!(crate::tree::query::CHUNK <= 64 * PACKET, "one bit for each packet of a chunk");
+/// A set of packets of a chunk.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Packets([u64; Self::WORDS]);
+
+impl Packets {
+    const WORDS: usize = CHUNK / PACKET / u64::BITS as usize;
+
+    #[inline(always)]
+    pub(super) fn insert(&mut self, packet: usize) {
+        let (word, bit) = Self::place(packet);
+        self.0[word] |= 1 << bit;
+    }
+
+    #[inline(always)]
+    pub(super) fn contains(&self, packet: usize) -> bool {
+        let (word, bit) = Self::place(packet);
+        self.0[word] >> bit & 1 != 0
+    }
+
+    #[inline(always)]
+    fn place(packet: usize) -> (usize, usize) {
+        let bits = u64::BITS as usize;
+        (packet / bits % Self::WORDS, packet % bits)
+    }
+}
 
 impl PreparedRays {
     /// Take the ranges of the rays `range` of `rays`.
@@ -94,7 +119,7 @@ impl PreparedRays {
         range: Range<usize>,
     ) {
         self.len = range.len();
-        self.recorded = 0;
+        self.recorded = Packets::default();
         self.original.clear();
         if !(primitives.shapes().is_empty() && primitives.planes().is_empty()) {
             self.original.extend(range.clone().map(|index| rays.get(index)));
@@ -130,7 +155,7 @@ impl PreparedRays {
     /// True if the rays of packet `packet` have their records.
     #[inline(always)]
     pub(super) fn is_recorded(&self, packet: usize) -> bool {
-        self.recorded >> (packet % 64) & 1 != 0
+        self.recorded.contains(packet)
     }
 
     /// Upper end so far of the range of a ray without a record.
@@ -276,7 +301,7 @@ impl PreparedRays {
                 record_spheres(token, origin, direction, &mut self.spheres[first..first + STEP]);
             }
         }
-        self.recorded |= 1 << (packet % 64);
+        self.recorded.insert(packet);
     }
 
     #[inline(always)]

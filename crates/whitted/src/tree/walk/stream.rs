@@ -46,7 +46,10 @@ pub(super) fn walk<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, together:
     assert!(walk.rays.len() <= CHUNK, "ray numbers fit 16 bits");
     let mut lists = std::mem::take(walk.lists);
     // Every level leaves at most 15 lists behind, each no longer than the chunk.
-    lists.ids.resize((walk.tree.depth() * WIDTH + 2) * CHUNK + SPARE, 0);
+    let room = (walk.tree.depth() * WIDTH + 2) * walk.rays.len() + SPARE;
+    if lists.ids.len() < room {
+        lists.ids.resize(room, 0);
+    }
     for bucket in &mut lists.octants {
         bucket.clear();
     }
@@ -87,6 +90,10 @@ fn work_off<S: Simd, G: Goal>(
 ) {
     while let Some((child, len)) = lists.waiting.pop() {
         top -= len;
+        // While this list is worked off, what the next one needs comes from memory.
+        if let Some(&(next, _)) = lists.waiting.last() {
+            walk.tree.prefetch(next);
+        }
         match child.decode() {
             ChildKind::Interior(_) if len < MIN_LIST => {
                 single::interleaved(token, walk, &mut lists.stack, &lists.ids[top..top + len], child, counts);

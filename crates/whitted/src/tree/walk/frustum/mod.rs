@@ -41,6 +41,7 @@ pub(super) fn walk<S: Simd, G: Goal>(
     first: usize,
     counts: &mut Counts,
 ) -> bool {
+    Packet::prefetch(walk, first + PACKET);
     let Some(mut packet) = Packet::new(token, walk, first) else { return false };
     let mut pyramid = Pyramid::around(token, walk, &packet);
     let octant = packet.octant;
@@ -61,6 +62,8 @@ pub(super) fn walk<S: Simd, G: Goal>(
                 let keys = (&mut stack.entry[top..top + WIDTH]).try_into().expect("WIDTH entries");
                 let values = (&mut stack.child[top..top + WIDTH]).try_into().expect("WIDTH children");
                 top += token.compress_in_order(mask, &node.order(octant), entry, node.children(), keys, values);
+                // The nearest is wanted at once: what comes after it can be fetched meanwhile.
+                walk.tree.prefetch(Child(stack.child[top.saturating_sub(2)]));
             }
             ChildKind::Leaf { kind: LeafKind::Shapes, .. } => {
                 packet.finish(walk, first);

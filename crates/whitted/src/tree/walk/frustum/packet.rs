@@ -76,6 +76,18 @@ impl Packet {
         packet.prepare(token, walk.tree.scale()).then_some(packet)
     }
 
+    /// Ask the memory for the packet's worth of rays from `first` on.
+    #[inline(always)]
+    pub(super) fn prefetch<G: Goal>(walk: &Walk<'_, G>, first: usize) {
+        let start = walk.start + first;
+        let (o, d) = (walk.batch.origin, walk.batch.direction);
+        for row in [o.x, o.y, o.z, d.x, d.y, d.z] {
+            for step in 0..ROWS {
+                simd::prefetch(row, start + step * LANES);
+            }
+        }
+    }
+
     /// Scale and shear the directions; false if a ray has another dominant axis or sense, or a range that begins before
     /// its origin.
     #[inline(always)]

@@ -45,7 +45,7 @@ impl PreparedRays {
                 SphereRay::new(origin, direction);
             self.spheres[0] = Record([ox, oy, oz, dx, dy, dz, inverse_length_squared, 0.0]);
         }
-        self.recorded |= 1;
+        self.recorded.insert(0);
     }
 
     fn record_node(&mut self, tree: &Tree, origin: Vec3<One>, direction: Vec3<One>, t_min: f32) {
