@@ -5,7 +5,7 @@ use formats::rays::{HitFormat, RayFormat};
 use std::path::PathBuf;
 use std::str::FromStr;
 use whitted::classic::{Split, TriangleTest, Walk};
-use whitted::render::{Method, Region};
+use whitted::render::{Aov, Method, Region};
 use whitted::scene::{Antialias, Sampling, Shadows};
 use whitted::tree::{TreeKind, WalkKind};
 
@@ -106,6 +106,10 @@ pub(crate) struct RenderArguments {
     /// Picture to write (.png), or - for a PNG on standard output [default: the scene's name with .png, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// Write these pictures too, beside the other as NAME.png: masks of importance and supersampling, heat maps of nodes,
+    /// tests and time
+    #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',', value_parser = parse_named(&Aov::ALL))]
+    pub(crate) aov: Vec<Aov>,
     /// Report statistics when done, on standard output or into a file
     #[arg(long, value_name = "text|json[=FILE]", value_parser = parse_stats)]
     pub(crate) stats: Option<Stats>,

@@ -10,9 +10,11 @@ use crate::progress::Display;
 use crate::report::Report;
 use crate::stopwatch::Stopwatch;
 use crate::variant::Built;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use whitted::render::{Cancel, Classic, Frame, PixelRect, render_classic, render_rect};
+use whitted::render::{
+    Aov, AovPicture, Cancel, Classic, Frame, PixelRect, aovs, aovs_classic, render_classic, render_rect,
+};
 use whitted::scene::{Prepared, Scene};
 use whitted::tree::BuildOptions;
 
@@ -39,7 +41,11 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     report.shares = watch.shares();
     report.statistics = frame.statistics;
     report.tree = classic.as_ref().map_or(prepared.geometry().tree().report(), Built::report);
-    timed(&mut report.write, || write(&frame, &scene, &outputs.picture, cancel))?;
+    let aovs = timed(&mut report.aov, || pool.install(|| job.other_pictures(&frame, cancel)))?;
+    timed(&mut report.write, || {
+        write(&frame, &scene, &outputs.picture, cancel)?;
+        outputs.write_aovs(&aovs, arguments.verbosity.quiet)
+    })?;
     tell_summary(arguments, &outputs.picture, rectangle, &report);
     outputs.write_stats(&report)
 }
@@ -47,6 +53,8 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
 /// Where everything goes, checked.
 struct Outputs {
     picture: Target,
+    /// In the order of the arguments.
+    aovs: Vec<Target>,
     stats: Option<(Stats, Target)>,
 }
 
@@ -59,15 +67,28 @@ impl Outputs {
             return Err(Failure::Usage(text));
         }
         let picture = Target::check(&path)?;
+        let aovs = aov_targets(&arguments.aov, &path)?;
         let stats = arguments.stats.clone().map(|stats| {
             let target = Target::check(&stats.file.clone().unwrap_or_else(|| PathBuf::from("-")))?;
-            if target.is_same_as(&picture) {
-                let text = format!("the picture and the statistics cannot both go to the same file, {picture}");
+            if let Some(same) = aovs.iter().chain([&picture]).find(|other| target.is_same_as(other)) {
+                let text = format!("the picture and the statistics cannot both go to the same file, {same}");
                 return Err(Failure::Usage(text));
             }
             Ok((stats, target))
         });
-        Ok(Self { picture, stats: stats.transpose()? })
+        Ok(Self { picture, aovs, stats: stats.transpose()? })
+    }
+
+    fn write_aovs(&self, pictures: &[AovPicture], quiet: bool) -> Result<(), Failure> {
+        for (picture, target) in pictures.iter().zip(&self.aovs) {
+            let description = picture.to_string();
+            let png = formats::png::encode_described(picture.width, picture.height, &picture.rgb8, &description);
+            target.write(&png.map_err(|error| Failure::Io(error.to_string()))?)?;
+            if !quiet {
+                eprintln!("wrote {target}: {description}");
+            }
+        }
+        Ok(())
     }
 
     fn write_stats(&self, report: &Report) -> Result<(), Failure> {
@@ -79,6 +100,15 @@ impl Outputs {
 /// The scene's name with `.png`, in the current folder.
 fn default_output(arguments: &RenderArguments) -> PathBuf {
     PathBuf::from(arguments.scene.scene.file_name().unwrap_or_default()).with_extension("png")
+}
+
+/// Where the other pictures go: `a.depth.png` beside `a.png`.
+fn aov_targets(aovs: &[Aov], picture: &Path) -> Result<Vec<Target>, Failure> {
+    if !aovs.is_empty() && picture.as_os_str() == "-" {
+        let text = "--aov writes its pictures beside the other, which must be a file and not standard output";
+        return Err(Failure::Usage(text.to_owned()));
+    }
+    aovs.iter().map(|aov| Target::check(&picture.with_extension(format!("{}.png", aov.name())))).collect()
 }
 
 fn scene(arguments: &RenderArguments) -> Result<Scene, Failure> {
@@ -118,6 +148,22 @@ impl Job<'_> {
         display.finish();
         frame.map_err(|_cancelled| Failure::Interrupted)
     }
+
+    fn other_pictures(&self, frame: &Frame, cancel: &Cancel) -> Result<Vec<AovPicture>, Failure> {
+        let Self { prepared, classic, scene, arguments, .. } = *self;
+        let start = Instant::now();
+        // 2⁶⁴ ns are five centuries.
+        let clock = || start.elapsed().as_nanos() as u64;
+        let (wanted, settings, execution) = (&arguments.aov[..], &scene.settings, arguments.execution.execution());
+        let pictures = match classic {
+            None => aovs(wanted, frame, prepared, settings, &execution, &clock, cancel),
+            Some(built) => {
+                let classic = Classic { prepared, caster: built.caster(prepared.geometry().primitives()) };
+                aovs_classic(wanted, frame, &classic, settings, &execution, &clock, cancel)
+            }
+        };
+        pictures.map_err(|_cancelled| Failure::Interrupted)
+    }
 }
 
 fn write(frame: &Frame, scene: &Scene, target: &Target, cancel: &Cancel) -> Result<(), Failure> {
@@ -152,7 +198,7 @@ fn tell_summary(arguments: &RenderArguments, picture: &Target, rectangle: PixelR
         return;
     }
     let PixelRect { width, height, .. } = rectangle;
-    let total = report.load + report.build + report.trace + report.write;
+    let total = report.load + report.build + report.trace + report.aov + report.write;
     let [load, build, trace, write, total] =
         [report.load, report.build, report.trace, report.write, total].map(|time| time.as_secs_f64());
     eprintln!(

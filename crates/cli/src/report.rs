@@ -15,6 +15,8 @@ pub(crate) struct Report {
     pub(crate) load: Duration,
     pub(crate) build: Duration,
     pub(crate) trace: Duration,
+    /// For pictures of something other than light.
+    pub(crate) aov: Duration,
     pub(crate) write: Duration,
     pub(crate) shares: Shares,
 }
@@ -57,6 +59,7 @@ impl Report {
             ("seconds.load", Real(self.load.as_secs_f64())),
             ("seconds.build", Real(self.build.as_secs_f64())),
             ("seconds.trace", Real(self.trace.as_secs_f64())),
+            ("seconds.aov", Real(self.aov.as_secs_f64())),
             ("seconds.write", Real(self.write.as_secs_f64())),
             ("percent.trace", Real(self.shares.trace)),
             ("percent.shadow", Real(self.shares.shadow)),

@@ -93,6 +93,9 @@ fn wrong_usage_is_2_and_says_what_was_expected() {
         (&["render", "scene.nff", "-o", "noextension"], ".png"),
         (&["render", "scene.nff", "-o", "-", "--stats", "json"], "standard output"),
         (&["render", "scene.nff", "-o", "a.png", "--stats", "json=./a.png"], "same file"),
+        (&["render", "scene.nff", "--aov", "color"], "normal, depth, id"),
+        (&["render", "scene.nff", "-o", "-", "--aov", "depth"], "standard output"),
+        (&["render", "scene.nff", "-o", "a.png", "--aov", "id", "--stats", "json=./a.id.png"], "same file"),
         (&["render", "scene.nff", "--crop", "40,0,9x1"], "48x32"),
         (&["render", "scene.nff", "--camera", "front"], "front"),
     ] {
@@ -111,6 +114,22 @@ fn files_that_cannot_be_read_or_written_are_1() {
     expect(&folder, &["render", "scene.nff", "-o", "taken.png"], 1, &["it is a folder"]);
     expect(&folder, &["render", "scene.nff", "-o", "a.png", "--stats", "json=none/a.json"], 1, &["no folder"]);
     assert_eq!(names(&folder), ["scene.nff", "taken.png"]);
+}
+
+#[test]
+fn other_pictures_stand_beside_the_picture() {
+    let folder = folder("aovs");
+    let all = "normal,depth,id,primitive,importance,supersampled,nodes,tests,time";
+    let output = expect(&folder, &["render", "scene.nff", "--aov", all], 0, &["a ray was cut", "(dark) to"]);
+    assert_eq!(String::from_utf8_lossy(&output.stderr).matches("wrote 'scene.").count(), 10);
+    let expected =
+        all.split(',').map(|name| format!("scene.{name}.png")).chain(["scene.nff", "scene.png"].map(String::from));
+    let mut expected: Vec<String> = expected.collect();
+    expected.sort();
+    assert_eq!(names(&folder), expected);
+    let depth = fs::read(folder.join("scene.depth.png")).unwrap();
+    assert_eq!(png_size(&depth), [48, 32]);
+    assert!(String::from_utf8_lossy(&depth).contains("distance from the eye"), "the file says what it shows");
 }
 
 #[test]

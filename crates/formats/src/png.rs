@@ -12,6 +12,14 @@ use crate::error::{Error, ErrorKind};
 /// # Errors
 /// If `rgb8` has another length, or the picture is empty or too large for the format (2³¹ − 1 pixels on a side).
 pub fn encode(width: u32, height: u32, rgb8: &[u8]) -> Result<Vec<u8>, Error> {
+    encode_described(width, height, rgb8, "")
+}
+
+/// As [`encode`], with a line of text in the file that says what the picture shows, if it is not empty.
+///
+/// # Errors
+/// As [`encode`]; also for characters beyond Latin-1.
+pub fn encode_described(width: u32, height: u32, rgb8: &[u8], description: &str) -> Result<Vec<u8>, Error> {
     let fail = |kind, what: String| Error::new(kind, Path::new(""), what);
     let expected = 3 * u128::from(width) * u128::from(height);
     if rgb8.len() as u128 != expected {
@@ -24,7 +32,11 @@ pub fn encode(width: u32, height: u32, rgb8: &[u8]) -> Result<Vec<u8>, Error> {
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     encoder.set_compression(Compression::Fast);
-    let written = encoder.write_header().and_then(|mut writer| {
+    let described = match description {
+        "" => Ok(()),
+        text => encoder.add_text_chunk("Description".to_owned(), text.to_owned()),
+    };
+    let written = described.and_then(|()| encoder.write_header()).and_then(|mut writer| {
         writer.write_image_data(rgb8)?;
         writer.finish()
     });
@@ -50,6 +62,15 @@ mod tests {
             assert_eq!((info.width, info.height, info.color_type), (width, height, ColorType::Rgb));
             assert_eq!(decoded, pixels);
         }
+    }
+
+    #[test]
+    fn descriptions_are_kept() {
+        let file = encode_described(1, 1, &[1, 2, 3], "depth, 2 to 4").unwrap();
+        let reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+        let [text] = &reader.info().uncompressed_latin1_text[..] else { panic!("one text") };
+        assert_eq!((&*text.keyword, &*text.text), ("Description", "depth, 2 to 4"));
+        assert!(encode_described(1, 1, &[1, 2, 3], "\u{2192}").is_err());
     }
 
     #[test]

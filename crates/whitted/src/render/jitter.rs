@@ -1,15 +1,44 @@
 //! Where in its pixel a sample lies.
 
 use crate::math::hash32;
+use crate::scene::{Antialias, Settings};
 
 /// Dimensions of the random numbers of one sample. Each use of randomness has its own, so that a new one changes no
 /// old picture.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Dimension {
+enum Dimension {
     /// Horizontal place in the pixel.
     PixelX = 0,
     /// Vertical place in the pixel.
     PixelY = 1,
+}
+
+/// Places of the samples of all pixels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Jitter {
+    strata: Stratification,
+    seed: u32,
+}
+
+impl Jitter {
+    /// The places that `settings` ask for.
+    pub(super) fn new(settings: &Settings) -> Self {
+        let samples = match settings.antialias {
+            Antialias::Uniform(samples) => samples,
+            _ => settings.antialias_max,
+        };
+        Self { strata: Stratification::new(samples), seed: settings.seed }
+    }
+
+    /// Samples of a pixel that is supersampled.
+    pub(super) fn samples(&self) -> u32 {
+        self.strata.samples
+    }
+
+    /// Place of sample `sample < samples` in a pixel; both coordinates in [0, 1].
+    pub(super) fn place(&self, [x, y]: [u32; 2], sample: u32) -> [f32; 2] {
+        if sample == 0 { MIDDLE } else { self.strata.place(PixelHash::new(x, y, self.seed), sample) }
+    }
 }
 
 /// Places of the samples of one pixel, in units of the pixel from its upper left corner.
@@ -18,7 +47,7 @@ pub(super) enum Dimension {
 /// within its own cell. The first sample, in the middle of the pixel, was taken before and stands for the cell that it
 /// lies in.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stratification {
+struct Stratification {
     samples: u32,
     rows: u32,
     /// The cell of the first sample.
@@ -30,7 +59,7 @@ pub(super) const MIDDLE: [f32; 2] = [0.5, 0.5];
 
 impl Stratification {
     /// `samples` ≥ 1 samples in a pixel.
-    pub(super) fn new(samples: u32) -> Self {
+    fn new(samples: u32) -> Self {
         let samples = samples.max(1);
         let rows = samples.isqrt();
         let mut new = Self { samples, rows, middle: 0 };
@@ -39,7 +68,7 @@ impl Stratification {
     }
 
     /// Place of sample `1 ≤ sample < samples` of the pixel with this hash; both coordinates in [0, 1].
-    pub(super) fn place(&self, pixel: PixelHash, sample: u32) -> [f32; 2] {
+    fn place(&self, pixel: PixelHash, sample: u32) -> [f32; 2] {
         // Samples 1, 2, … take the cells in order, without that of sample 0.
         let cell = self.cell(if sample <= self.middle { sample - 1 } else { sample });
         let random = [Dimension::PixelX, Dimension::PixelY].map(|dimension| pixel.uniform(sample, dimension));
@@ -75,11 +104,11 @@ impl Cell {
 
 /// The hash of a pixel's coordinates and the user's seed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PixelHash(u32);
+struct PixelHash(u32);
 
 impl PixelHash {
     /// The hash of pixel (`x`, `y`) of the whole picture.
-    pub(super) fn new(x: u32, y: u32, seed: u32) -> Self {
+    fn new(x: u32, y: u32, seed: u32) -> Self {
         Self(hash32(x ^ hash32(y ^ hash32(seed))))
     }
 

@@ -3,8 +3,9 @@
 //! The path of a pixel: `frame` divides the picture into regions; a `workspace` makes the camera rays of one;
 //! the `wavefront` (or its oracle, `recursive`) traces them and all that descends from them, making a `vertex`
 //! of each hit, scattering rays from it and asking for `shadow`s; the `film` sums the light of each sample;
-//! `edges` decides which pixels are sampled again.
+//! `edges` decides which pixels are sampled again. `aov` paints what else is known of a frame.
 
+mod aov;
 mod context;
 mod edges;
 mod execution;
@@ -31,6 +32,7 @@ mod vertex;
 mod wavefront;
 mod workspace;
 
+pub use aov::{Aov, AovPicture, Clock, Legend, aovs, aovs_classic, heat};
 pub use execution::{Execution, Method, Region};
 pub use first_pass::FirstSample;
 pub use frame::{Classic, Frame, render, render_classic, render_rect};

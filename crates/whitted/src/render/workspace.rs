@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::execution::Method;
 use super::first_pass::{FirstPass, PassRows};
-use super::jitter::{MIDDLE, PixelHash, Stratification};
+use super::jitter::{Jitter, MIDDLE};
 use super::probe::{Phase, Probe, watched};
 use super::progress::Cancelled;
 use super::recursive::Recursive;
@@ -12,7 +12,6 @@ use super::samples::Samples;
 use super::statistics::Statistics;
 use super::wavefront::{CHUNK, Wavefront};
 use crate::math::{Vec3d, Vec3f};
-use crate::scene::Antialias;
 use simd::{F32Lanes, U32Lanes};
 use std::sync::{Mutex, PoisonError};
 
@@ -105,12 +104,8 @@ impl Workspace {
         pixels: &[[u32; 2]],
         probe: &P,
     ) -> Result<Vec<Refined>, Cancelled> {
-        let samples = match context.settings.antialias {
-            Antialias::Uniform(samples) => samples,
-            _ => context.settings.antialias_max,
-        };
-        let strata = Stratification::new(samples);
-        let seed = context.settings.seed;
+        let jitter = Jitter::new(context.settings);
+        let samples = jitter.samples();
         // Sample by sample within each pixel, so that sums are formed in the order of samples.
         let mut queue = pixels
             .iter()
@@ -125,7 +120,7 @@ impl Workspace {
             watched(probe, Phase::Refine, || {
                 self.places.clear();
                 for (number, &(_, pixel, sample)) in (0..).zip(&batch) {
-                    self.places.push(number, pixel, strata.place(PixelHash::new(pixel[0], pixel[1], seed), sample));
+                    self.places.push(number, pixel, jitter.place(pixel, sample));
                 }
             });
             self.trace(context, probe)?;
@@ -137,6 +132,22 @@ impl Workspace {
         }
         let mean = |sum: Vec3d| (sum / f64::from(samples)).to_f32();
         Ok(pixels.iter().zip(sums).map(|(&pixel, sum)| Refined { pixel, color: mean(sum) }).collect())
+    }
+
+    /// What is done for the first `samples` samples of one pixel, one ray after the other.
+    pub(super) fn statistics_of(
+        &mut self,
+        context: &Context,
+        jitter: &Jitter,
+        pixel: [u32; 2],
+        samples: u32,
+    ) -> Result<Statistics, Cancelled> {
+        self.places.clear();
+        (0..samples).for_each(|sample| self.places.push(sample, pixel, jitter.place(pixel, sample)));
+        self.take_statistics();
+        self.samples.reset(self.places.len());
+        self.recursive.run(context, &self.places, &mut self.samples)?;
+        Ok(self.take_statistics())
     }
 
     /// Trace the samples of the batch.
