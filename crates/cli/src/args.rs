@@ -42,9 +42,31 @@ pub(crate) enum Command {
     /// Read a scene, report what is wrong with it, and render nothing
     #[command(after_help = EXIT_CODES)]
     Check(CheckArguments),
+    /// Tell why a pixel looks as it does: every ray of its samples
+    #[command(after_help = EXIT_CODES)]
+    Explain(Box<ExplainArguments>),
     /// Find what each ray of a table hits first
     #[command(after_help = TABLES)]
     Trace(TraceArguments),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExplainArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Column and row of the pixel, counted from 0 at the top left
+    #[arg(value_name = "X,Y", value_parser = parse_pixel)]
+    pub(crate) pixel: [u32; 2],
+    /// Tell of all samples of the pixel [default: of the one in its middle]
+    #[arg(long)]
+    pub(crate) all_samples: bool,
+    /// Write JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) verbosity: Verbosity,
+    #[command(flatten)]
+    pub(crate) picture: PictureArguments,
 }
 
 #[derive(Debug, Args)]
@@ -306,6 +328,11 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
     Ok(size)
 }
 
+fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
+    let (x, y) = text.split_once(',').ok_or("expected X,Y, such as 320,240")?;
+    Ok([number(x)?, number(y)?])
+}
+
 fn parse_crop(text: &str) -> Result<Crop, String> {
     match text.split(',').collect::<Vec<_>>()[..] {
         [x, y, size] => Ok(Crop { x: number(x)?, y: number(y)?, size: parse_size(size)? }),
@@ -377,6 +404,14 @@ mod tests {
         }
         assert_eq!(parse_crop("1,2,3x4"), Ok(Crop { x: 1, y: 2, size: [3, 4] }));
         assert!(parse_crop("1,2,3,4").is_err() && parse_crop("-1,2,3x4").is_err());
+    }
+
+    #[test]
+    fn pixels_are_two_numbers() {
+        assert_eq!(parse_pixel("3,4"), Ok([3, 4]));
+        for bad in ["", "3", "3x4", "-1,2", "1,2,3"] {
+            assert!(parse_pixel(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The command `whitted`: renders scenes, checks them, and traces rays for other programs.
+//! The command `whitted`: renders scenes, explains pixels, checks scenes, and traces rays for other programs.
 //!
 //! It knows arguments, files' final names, progress and reports. What a scene means is `formats`' to say, and how a
 //! picture is computed the library's.
@@ -13,6 +13,7 @@
 mod args;
 mod check;
 mod exit;
+mod explain;
 mod interrupt;
 mod load;
 mod output;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
     exit::finish(match args::Arguments::parse().command {
         args::Command::Render(arguments) => render::run(&arguments),
         args::Command::Check(arguments) => check::run(&arguments),
+        args::Command::Explain(arguments) => explain::run(&arguments),
         args::Command::Trace(arguments) => trace::run(&arguments),
     })
 }

@@ -64,7 +64,9 @@ fn png_size(bytes: &[u8]) -> [u32; 2] {
 #[test]
 fn help_and_version_succeed() {
     let folder = folder("help");
-    for arguments in [&["--help"][..], &["--version"], &["render", "--help"], &["check", "--help"]] {
+    for arguments in
+        [&["--help"][..], &["--version"], &["render", "--help"], &["check", "--help"], &["explain", "--help"]]
+    {
         assert!(!expect(&folder, arguments, 0, &[]).stdout.is_empty());
     }
 }
@@ -96,6 +98,9 @@ fn wrong_usage_is_2_and_says_what_was_expected() {
         (&["render", "scene.nff", "--aov", "color"], "normal, depth, id"),
         (&["render", "scene.nff", "-o", "-", "--aov", "depth"], "standard output"),
         (&["render", "scene.nff", "-o", "a.png", "--aov", "id", "--stats", "json=./a.id.png"], "same file"),
+        (&["explain", "scene.nff", "3"], "X,Y"),
+        (&["explain", "scene.nff", "48,0"], "48x32"),
+        (&["explain", "scene.nff", "0,0", "--crop", "0,0,4x4"], "--crop"),
         (&["render", "scene.nff", "--crop", "40,0,9x1"], "48x32"),
         (&["render", "scene.nff", "--camera", "front"], "front"),
     ] {
@@ -130,6 +135,29 @@ fn other_pictures_stand_beside_the_picture() {
     let depth = fs::read(folder.join("scene.depth.png")).unwrap();
     assert_eq!(png_size(&depth), [48, 32]);
     assert!(String::from_utf8_lossy(&depth).contains("distance from the eye"), "the file says what it shows");
+}
+
+#[test]
+fn a_pixel_is_explained_to_people_and_to_programs() {
+    let folder = folder("explain");
+    // The middle of the left ball, which mirrors.
+    let output = expect(&folder, &["explain", "scene.nff", "13,17"], 0, &[]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for words in
+        ["pixel 13,17: ", "sample 0 at 13.5,17.5", "camera hits sphere 1", "├─ light 1 arrives", "└─ reflected × 0.2"]
+    {
+        assert!(text.contains(words), "no '{words}' in:\n{text}");
+    }
+    let output = expect(&folder, &["explain", "scene.nff", "13,17", "--json", "--aa", "4", "--all-samples"], 0, &[]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&json["sample_count"], json["samples"].as_array().unwrap().len()), (&4.into(), 4));
+    let rays = json["samples"][0]["rays"].as_array().unwrap();
+    assert_eq!(
+        (&rays[0]["kind"], &rays[0]["end"], &rays[0]["parent"]),
+        (&"camera".into(), &"hit".into(), &serde_json::Value::Null)
+    );
+    assert_eq!((&rays[1]["kind"], &rays[1]["light"], &rays[1]["parent"]), (&"shadow".into(), &0.into(), &0.into()));
+    assert_eq!(rays[0]["hit"]["object"], "sphere 1");
 }
 
 #[test]

@@ -30,6 +30,16 @@ macro_rules! each_shape {
 }
 
 impl Shape {
+    /// The word for its kind.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Disc(_) => "disc",
+            Self::Boxed(_) => "box",
+            Self::Cylinder(_) => "cylinder",
+            Self::Cone(_) => "cone",
+        }
+    }
+
     /// The parameters of all points at which the infinite line `origin + t · direction` crosses the surface.
     ///
     /// The direction need not be normalised. A degenerate shape, a zero direction or a NaN gives no crossing.

@@ -8,6 +8,7 @@ use super::context::Context;
 use super::lighting::Sent;
 use super::progress::Cancelled;
 use super::queue::TaggedRays;
+use super::recorder::{Recorder, Unrecorded};
 use super::samples::Samples;
 use super::shadow::{BEFORE_ALL, MAX_FILTERS, opaque_primitives};
 use super::source::{Alone, Production, Source};
@@ -32,11 +33,12 @@ pub(super) struct Recursive {
 }
 
 /// A batch under way.
-struct Run<'a, H> {
+struct Run<'a, H, R> {
     context: &'a Context<'a>,
     source: H,
     stack: &'a mut Vec<Waiting>,
     samples: &'a mut Samples,
+    recorder: &'a mut R,
 }
 
 impl Recursive {
@@ -45,20 +47,38 @@ impl Recursive {
     /// # Errors
     /// If the render was cancelled.
     pub(super) fn run(&mut self, context: &Context, places: &Places, samples: &mut Samples) -> Result<(), Cancelled> {
+        self.record(context, places, samples, &mut Unrecorded)
+    }
+
+    /// As [`run`](Self::run), and tell `recorder` everything.
+    ///
+    /// # Errors
+    /// If the render was cancelled.
+    pub(super) fn record<R: Recorder>(
+        &mut self,
+        context: &Context,
+        places: &Places,
+        samples: &mut Samples,
+        recorder: &mut R,
+    ) -> Result<(), Cancelled> {
         let Self { stack, alone } = self;
         match context.caster {
-            Some(source) => Run { context, source, stack, samples }.all(places),
-            None => Run { context, source: Production { query: context.query, alone }, stack, samples }.all(places),
+            Some(source) => Run { context, source, stack, samples, recorder }.all(places),
+            None => {
+                let source = Production { query: context.query, alone };
+                Run { context, source, stack, samples, recorder }.all(places)
+            }
         }
     }
 }
 
-impl<H: Source> Run<'_, H> {
+impl<H: Source, R: Recorder> Run<'_, H, R> {
     fn all(&mut self, places: &Places) -> Result<(), Cancelled> {
         for index in 0..places.len() {
             let ([x, y], sample) = places.load::<One>(Scalar, index);
             let Ray { origin, direction, .. } = self.context.camera.ray(value(x), value(y));
             let tag = camera_tag(Scalar, sample);
+            self.recorder.begins([value(x), value(y)]);
             self.stack.clear();
             self.stack.push((TaggedRays { origin: ones(origin), direction: ones(direction), tag }, 0));
             while let Some((ray, generation)) = self.stack.pop() {
@@ -72,13 +92,15 @@ impl<H: Source> Run<'_, H> {
     }
 
     fn visit(&mut self, rays: &TaggedRays<One>, generation: u32) {
+        self.recorder.visits(rays);
         let context = self.context;
         let (all, sample) = (MaskLanes::from_bits(Scalar, 1), rays.tag.sample);
         let ray = Ray::new(values(rays.origin), values(rays.direction));
         let hit = self.source.closest_hit(&ray, &mut self.samples.statistics);
         if !hit.is_hit() {
-            let light = context.look.background(Scalar, rays.direction);
-            self.samples.add_lanes(all, sample, light.times(rays.tag.weight));
+            let light = context.look.background(Scalar, rays.direction).times(rays.tag.weight);
+            self.samples.add_lanes(all, sample, light);
+            self.recorder.misses(light);
             return;
         }
         let point = context.geometry.primitives().surface_point(&ray, &hit);
@@ -89,17 +111,15 @@ impl<H: Source> Run<'_, H> {
         if generation == 0 {
             vertex.note_first(Scalar, context, self.samples);
         }
-        self.samples.add_lanes(all, sample, vertex.ambient(Scalar, context));
+        let ambient = vertex.ambient(Scalar, context);
+        self.samples.add_lanes(all, sample, ambient);
+        self.recorder.hits(&vertex, ambient);
         if vertex.answers_to_lights(Scalar).any() {
-            for (light, origin) in context.look.lights() {
-                let sent = vertex.lit().receive(Scalar, light, *origin);
-                if sent.faces.any() {
-                    let light = self.arriving(&sent);
-                    self.samples.add_lanes(all, sample, ones(light));
-                }
-            }
+            self.light(&vertex);
         }
-        if let Some(scattered) = vertex.scatter(Scalar, context, generation, self.samples) {
+        let scattered = vertex.scatter(Scalar, context, generation, self.samples, self.recorder);
+        self.recorder.scatters(scattered.as_ref());
+        if let Some(scattered) = scattered {
             // Pushed last, popped first: the mirrored ray before the refracted one.
             for child in [scattered.refracted, scattered.reflected] {
                 if child.exists.any() {
@@ -109,17 +129,33 @@ impl<H: Source> Run<'_, H> {
         }
     }
 
-    /// What reaches a surface of the light that a lamp sends.
-    fn arriving(&mut self, sent: &Sent<One>) -> Vec3f {
+    /// Add the light of all lamps that reaches a surface.
+    fn light(&mut self, vertex: &Vertex<One>) {
+        for (lamp, (light, origin)) in self.context.look.lights().iter().enumerate() {
+            let sent = vertex.lit().receive(Scalar, light, *origin);
+            if !sent.faces.any() {
+                self.recorder.lit(lamp, &sent, None, Vec3f::ZERO);
+                continue;
+            }
+            let (outcome, light) = self.arriving(&sent);
+            self.samples.add_lanes(vertex.active, vertex.tag.sample, ones(light));
+            self.recorder.lit(lamp, &sent, Some(outcome), light);
+        }
+    }
+
+    /// What is in the way of the light that a lamp sends to a surface, and what of it arrives.
+    fn arriving(&mut self, sent: &Sent<One>) -> (Occlusion, Vec3f) {
         let (origin, direction) = (values(sent.origin), values(sent.direction));
         let ray = Ray { origin, direction, t_min: 0.0, t_max: value(sent.t_max) };
         let statistics = &mut self.samples.statistics;
         statistics.shadow_rays += 1;
-        match self.source.occluded(&ray, opaque_primitives(self.context), statistics) {
+        let outcome = self.source.occluded(&ray, opaque_primitives(self.context), statistics);
+        let light = match outcome {
             Occlusion::Clear => values(sent.light),
             Occlusion::Filtered => self.filtered(&ray, values(sent.light)),
             Occlusion::Blocked => Vec3f::ZERO,
-        }
+        };
+        (outcome, light)
     }
 
     /// `light` after all surfaces on the way of a ray.

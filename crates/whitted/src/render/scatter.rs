@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::media::Media;
 use super::queue::{Tag, TaggedRays};
+use super::recorder::{Branch, Cuts, Untraced};
 use super::rows::{array, array_f32, lanes_of};
 use super::samples::Samples;
 use super::vertex::Vertex;
@@ -30,6 +31,22 @@ pub(super) struct Scattered<L: F32Lanes> {
     pub(super) refracted: Child<L>,
 }
 
+impl<L: F32Lanes> Scattered<L> {
+    /// The rays of one branch.
+    pub(super) fn branch(&self, branch: Branch) -> &Child<L> {
+        match branch {
+            Branch::Reflected => &self.reflected,
+            Branch::Refracted => &self.refracted,
+        }
+    }
+
+    /// Both branches, to be changed.
+    #[inline(always)]
+    fn branches(&mut self) -> [(Branch, &mut Child<L>); 2] {
+        [(Branch::Reflected, &mut self.reflected), (Branch::Refracted, &mut self.refracted)]
+    }
+}
+
 /// What is on the two sides of surfaces.
 struct Interface<L: F32Lanes> {
     /// Index of refraction on the side of the viewer, divided by that of the other side.
@@ -40,7 +57,7 @@ struct Interface<L: F32Lanes> {
 
 impl<L: F32Lanes> Vertex<L> {
     /// The rays that leave the surfaces here and are worth tracing; `generation` is that of the arriving rays. Counts
-    /// what is traced and what is not. `None` if nothing leaves.
+    /// what is traced and what is not, and tells `cuts` why not. `None` if nothing leaves.
     #[inline(always)]
     pub(super) fn scatter(
         &self,
@@ -48,28 +65,32 @@ impl<L: F32Lanes> Vertex<L> {
         context: &Context,
         generation: u32,
         samples: &mut Samples,
+        cuts: &mut impl Cuts<L>,
     ) -> Option<Scattered<L>> {
         let scatters = self.active & self.finish.scatters(token);
         if !scatters.any() {
             return None;
         }
-        let mut children = self.scatter_all(token, context, scatters);
-        let Scattered { reflected, refracted } = &mut children;
-        let counts = &mut samples.statistics;
+        let mut children = self.scatter_all(token, context, scatters, cuts);
         if generation >= context.settings.depth {
-            counts.cut_by_depth += count(reflected.exists) + count(refracted.exists);
+            for (branch, child) in children.branches() {
+                samples.statistics.cut_by_depth += count(child.exists);
+                cuts.untraced(branch, child.exists, &child.rays, Untraced::Depth);
+            }
             return None;
         }
-        counts.media_overflows += count(refracted.exists & refracted.rays.tag.media.overflowed(token));
-        for child in [&mut *reflected, &mut *refracted] {
+        let refracted = &children.refracted;
+        samples.statistics.media_overflows += count(refracted.exists & refracted.rays.tag.media.overflowed(token));
+        for (branch, child) in children.branches() {
             let heavy = child.rays.tag.weight.largest().ge(L::splat(token, context.settings.min_weight));
             let cut = child.exists & !heavy;
             if cut.any() {
                 samples.cut::<L>(cut, self.tag.sample);
+                cuts.untraced(branch, cut, &child.rays, Untraced::Weight);
             }
             child.exists = child.exists & heavy;
         }
-        self.share_budget(token, &mut children, context.settings.depth - generation, samples);
+        self.share_budget(token, &mut children, context.settings.depth - generation, samples, cuts);
         samples.statistics.reflected_rays += count(children.reflected.exists);
         samples.statistics.refracted_rays += count(children.refracted.exists);
         Some(children)
@@ -77,7 +98,13 @@ impl<L: F32Lanes> Vertex<L> {
 
     /// Both rays in the lanes `scatters`, whatever their weight.
     #[inline(always)]
-    fn scatter_all(&self, token: L::Token, context: &Context, scatters: L::Mask) -> Scattered<L> {
+    fn scatter_all(
+        &self,
+        token: L::Token,
+        context: &Context,
+        scatters: L::Mask,
+        cuts: &mut impl Cuts<L>,
+    ) -> Scattered<L> {
         let material = context.look.table().scattering::<L>(token, scatters, self.material);
         let transparent = scatters & self.finish.is_transparent(token);
         let interface = self.interface(token, context, transparent, &material);
@@ -86,10 +113,12 @@ impl<L: F32Lanes> Vertex<L> {
         let (reflect, transmit) = material.split(token, self.n_s.dot(self.view), interface.eta, total);
         let up = self.off_surface(self.error);
         let down = self.off_surface(self.error * L::splat(token, -1.0));
-        Scattered {
+        let all = Scattered {
             reflected: self.child(token, scatters, reflect, up, self.mirrored(token), self.tag.media),
             refracted: self.child(token, refracts, transmit, down, through, interface.beyond),
-        }
+        };
+        cuts.untraced(Branch::Refracted, total, &all.refracted.rays, Untraced::TotalReflection);
+        all
     }
 
     /// The rays from `origin` along `direction` that carry a share of the light, where that is not zero.
@@ -164,7 +193,14 @@ impl<L: F32Lanes> Vertex<L> {
     /// Divide the budget of the arriving rays, less those rays, among their children by weight. A child gets at least
     /// one ray, or is not traced, and none gets more than all its descendants could need.
     #[inline(always)]
-    fn share_budget(&self, token: L::Token, children: &mut Scattered<L>, generations_left: u32, samples: &mut Samples) {
+    fn share_budget(
+        &self,
+        token: L::Token,
+        children: &mut Scattered<L>,
+        generations_left: u32,
+        samples: &mut Samples,
+        cuts: &mut impl Cuts<L>,
+    ) {
         let left = self.tag.budget - L::U32::splat(token, 1);
         let Scattered { reflected: a, refracted: b } = children;
         let both = a.exists & b.exists;
@@ -176,9 +212,10 @@ impl<L: F32Lanes> Vertex<L> {
         if scarce.any() {
             self.share_scarce(token, scarce, left, children, generations_left);
         }
-        for child in [&mut children.reflected, &mut children.refracted] {
+        for (branch, child) in children.branches() {
             let starved = child.exists & child.rays.tag.budget.eq(none);
             samples.statistics.cut_by_budget += count(starved);
+            cuts.untraced(branch, starved, &child.rays, Untraced::Budget);
             child.exists = child.exists & !starved;
         }
     }

@@ -10,6 +10,7 @@ use super::media::Media;
 use super::probe::{Phase, Probe, watched};
 use super::progress::Cancelled;
 use super::queue::{RayQueue, Tag, TaggedRays};
+use super::recorder::Unrecorded;
 use super::rows::{BLOCK, first_lanes};
 use super::samples::Samples;
 use super::scatter::RAYS_PER_SAMPLE;
@@ -198,7 +199,7 @@ impl Shade<'_, '_> {
         if lit.any() {
             self.lit.append(lit, vertex.tag.sample, &vertex.lit());
         }
-        if let Some(scattered) = vertex.scatter(token, self.context, self.generation, self.samples) {
+        if let Some(scattered) = vertex.scatter(token, self.context, self.generation, self.samples, &mut Unrecorded) {
             for child in [&scattered.reflected, &scattered.refracted] {
                 if child.exists.any() {
                     self.next.append(child.exists, &child.rays);

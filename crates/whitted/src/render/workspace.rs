@@ -6,6 +6,7 @@ use super::first_pass::{FirstPass, PassRows};
 use super::jitter::{Jitter, MIDDLE};
 use super::probe::{Phase, Probe, watched};
 use super::progress::Cancelled;
+use super::recorder::Recorder;
 use super::recursive::Recursive;
 use super::region::PixelRect;
 use super::samples::Samples;
@@ -13,6 +14,7 @@ use super::statistics::Statistics;
 use super::wavefront::{CHUNK, Wavefront};
 use crate::math::{Vec3d, Vec3f};
 use simd::{F32Lanes, U32Lanes};
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// A pixel's final colour.
@@ -142,12 +144,34 @@ impl Workspace {
         pixel: [u32; 2],
         samples: u32,
     ) -> Result<Statistics, Cancelled> {
-        self.places.clear();
-        (0..samples).for_each(|sample| self.places.push(sample, pixel, jitter.place(pixel, sample)));
+        self.place(jitter, pixel, 0..samples);
         self.take_statistics();
         self.samples.reset(self.places.len());
         self.recursive.run(context, &self.places, &mut self.samples)?;
         Ok(self.take_statistics())
+    }
+
+    /// The colours of some samples of one pixel; `recorder` is told everything about their rays.
+    pub(super) fn record<R: Recorder>(
+        &mut self,
+        context: &Context,
+        jitter: &Jitter,
+        pixel: [u32; 2],
+        samples: Range<u32>,
+        recorder: &mut R,
+    ) -> Result<Vec<Vec3f>, Cancelled> {
+        self.place(jitter, pixel, samples);
+        self.samples.reset(self.places.len());
+        self.recursive.record(context, &self.places, &mut self.samples, recorder)?;
+        Ok(self.samples.colors().collect())
+    }
+
+    /// Make a batch of some samples of one pixel.
+    fn place(&mut self, jitter: &Jitter, pixel: [u32; 2], samples: Range<u32>) {
+        self.places.clear();
+        for (number, sample) in (0..).zip(samples) {
+            self.places.push(number, pixel, jitter.place(pixel, sample));
+        }
     }
 
     /// Trace the samples of the batch.

@@ -30,6 +30,27 @@ pub struct Scene {
     pub settings: Settings,
 }
 
+impl Scene {
+    /// What to call an object, by the number that [`Geometry::object`](super::Geometry::object) gives it: `mesh 'cup.obj'`,
+    /// `sphere 3` (counted from 1 within its kind).
+    pub fn object_name(&self, object: u32) -> String {
+        let mut index = object as usize;
+        if let Some(mesh) = self.meshes.get(index) {
+            return if mesh.name.is_empty() { format!("mesh {}", index + 1) } else { format!("mesh '{}'", mesh.name) };
+        }
+        index -= self.meshes.len();
+        if index < self.spheres.len() {
+            return format!("sphere {}", index + 1);
+        }
+        index -= self.spheres.len();
+        if let Some((shape, _)) = self.shapes.get(index) {
+            let alike = self.shapes[..=index].iter().filter(|(other, _)| other.kind() == shape.kind());
+            return format!("{} {}", shape.kind(), alike.count());
+        }
+        format!("plane {}", index - self.shapes.len() + 1)
+    }
+}
+
 /// A camera with a name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedCamera {

@@ -61,6 +61,11 @@ impl Space {
         (p - self.center) * self.scale
     }
 
+    /// The world point at an internal place.
+    pub fn world(&self, p: Vec3d) -> Vec3d {
+        p / self.scale + self.center
+    }
+
     /// The internal place of a world point.
     pub fn point_f32(&self, p: Vec3d) -> Vec3f {
         self.point(p).to_f32()
