@@ -43,7 +43,7 @@ impl<'a> Context<'a> {
     /// The material number of a primitive.
     #[inline]
     pub(super) fn material_of(&self, primitive: u32) -> u32 {
-        self.geometry.materials[primitive as usize]
+        self.look.primitive_materials()[primitive as usize]
     }
 
     /// The share of light that a primitive lets pass on its way to other things.

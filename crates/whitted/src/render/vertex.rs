@@ -54,7 +54,7 @@ impl<L: F32Lanes> Vertex<L> {
     ) -> Self {
         let zero = L::splat(token, 0.0);
         let primitive = L::U32::select(active, primitive, L::U32::splat(token, 0));
-        let material = L::U32::gather(&context.geometry.materials, primitive);
+        let material = L::U32::gather(context.look.primitive_materials(), primitive);
         let finish = context.look.table().finish(token, active, material, surface.position);
         let length = rays.direction.length_squared().sqrt();
         let view = -rays.direction / length;

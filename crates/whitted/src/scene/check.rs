@@ -1,6 +1,6 @@
 //! What a scene and its settings must fulfil before anything is made of them.
 
-use super::{Antialias, Background, Scene, Settings};
+use super::{Antialias, Background, NamedCamera, Scene, Settings};
 use crate::geometry::MeshError;
 use crate::math::Vec3f;
 
@@ -104,10 +104,7 @@ impl Settings {
 /// Everything that can be said without looking at the shapes.
 pub(super) fn scene(scene: &Scene) -> Result<(), SceneError> {
     scene.settings.check()?;
-    let camera = scene.cameras.first().ok_or(SceneError::NoCamera)?;
-    if let Some(fault) = camera.camera.fault() {
-        return Err(SceneError::Camera { camera: camera.name.clone(), fault });
-    }
+    camera(scene.cameras.first().ok_or(SceneError::NoCamera)?)?;
     for (index, light) in scene.lights.iter().enumerate() {
         if let Some(fault) = light.fault() {
             return Err(SceneError::Light { light: index + 1, fault });
@@ -119,6 +116,14 @@ pub(super) fn scene(scene: &Scene) -> Result<(), SceneError> {
         }
     }
     colors(scene)
+}
+
+/// A camera must see something and not everything.
+pub(super) fn camera(camera: &NamedCamera) -> Result<(), SceneError> {
+    match camera.camera.fault() {
+        Some(fault) => Err(SceneError::Camera { camera: camera.name.clone(), fault }),
+        None => Ok(()),
+    }
 }
 
 /// Every material number that is used must exist.

@@ -12,8 +12,6 @@ pub struct Geometry {
     pub(crate) space: Space,
     pub(crate) primitives: Primitives,
     pub(crate) tree: Tree,
-    /// Material of each primitive.
-    pub(crate) materials: Vec<u32>,
     /// For each mesh, the number of triangles in it and the meshes before it.
     mesh_ends: Vec<u32>,
     /// Around everything bounded.
@@ -38,7 +36,7 @@ impl Geometry {
         let mesh_ends = mesh_ends.collect();
         let tree = Tree::build(&primitives, options);
         let bounds = primitives.bounds();
-        Ok(Self { space, tree, bounds, materials: materials(scene), mesh_ends, dropped, primitives })
+        Ok(Self { space, tree, bounds, mesh_ends, dropped, primitives })
     }
 
     /// The primitives, in internal space.
@@ -144,15 +142,4 @@ fn world_normal(transform: &Affine, normal: [f32; 3]) -> Vec3f {
     let turned = turned / turned.abs().max_component();
     let unit = turned.normalize();
     if unit.is_finite() { unit.to_f32() } else { Vec3f::ZERO }
-}
-
-/// The material of each primitive, in the order of their numbers.
-fn materials(scene: &Scene) -> Vec<u32> {
-    let triangles = scene.meshes.iter().flat_map(|mesh| {
-        (0..mesh.triangles.len()).map(|i| mesh.triangle_materials.get(i).copied().unwrap_or(mesh.material))
-    });
-    let spheres = scene.spheres.iter().map(|sphere| sphere.2);
-    let shapes = scene.shapes.iter().map(|shape| shape.1);
-    let planes = scene.planes.iter().map(|plane| plane.1);
-    triangles.chain(spheres).chain(shapes).chain(planes).collect()
 }

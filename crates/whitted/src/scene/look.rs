@@ -1,10 +1,11 @@
 //! How everything looks: materials, lights, camera, background.
 
-use super::{Background, Camera, Geometry, Scene, SceneError, check};
+use super::{Background, Camera, Geometry, Scene, SceneError, Space, check};
 use crate::math::{Aabb, Vec3, Vec3f};
 use crate::shading::{MaterialTable, PreparedLight, PreparedMaterial};
 use crate::tree::BitSet;
 use simd::F32Lanes;
+use std::sync::Arc;
 
 /// Where shadow rays start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,19 +24,22 @@ const DISTANT: f32 = 64.0;
 #[derive(Clone, Debug)]
 pub struct Look {
     materials: Vec<PreparedMaterial>,
+    /// Material of each primitive.
+    primitive_materials: Arc<[u32]>,
     table: MaterialTable,
     lights: Vec<(PreparedLight, ShadowOrigin)>,
     ambient: Vec3f,
     background: Background,
     camera: Camera,
     /// Primitives that let no light pass; `None` if there are no others.
-    opaque: Option<BitSet>,
+    opaque: Option<Arc<BitSet>>,
 }
 
 impl Look {
     /// The look of a scene that has passed [`check::scene`].
     pub(super) fn new(scene: &Scene, geometry: &Geometry) -> Result<Self, SceneError> {
-        check::material_indices(&geometry.materials, scene.materials.len())?;
+        let primitive_materials = primitive_materials(scene);
+        check::material_indices(&primitive_materials, scene.materials.len())?;
         let space = geometry.space();
         let prepare = |material| PreparedMaterial::new(material, space.origin(), space.scale());
         let materials: Vec<_> = scene.materials.iter().map(|named| prepare(&named.material)).collect();
@@ -48,11 +52,23 @@ impl Look {
             lights: lights.collect(),
             ambient: scene.ambient,
             background: scene.background,
-            camera: Camera { eye: space.point(camera.eye), look_at: space.point(camera.look_at), ..*camera },
-            opaque: opaque(geometry, &materials),
+            camera: internal_camera(camera, space),
+            opaque: opaque(&primitive_materials, &materials).map(Arc::new),
             table: MaterialTable::new(&materials),
             materials,
+            primitive_materials,
         })
+    }
+
+    /// The same look to another camera without a [fault](Camera::fault), in world space.
+    pub(super) fn with_camera(&self, camera: &Camera, space: &Space) -> Self {
+        Self { camera: internal_camera(camera, space), ..self.clone() }
+    }
+
+    /// The number of the material of each primitive.
+    #[inline(always)]
+    pub(crate) fn primitive_materials(&self) -> &[u32] {
+        &self.primitive_materials
     }
 
     /// Material `index`, which must exist.
@@ -73,7 +89,7 @@ impl Look {
 
     /// Primitives that let no light pass; `None` if there are no others.
     pub(crate) fn opaque(&self) -> Option<&BitSet> {
-        self.opaque.as_ref()
+        self.opaque.as_deref()
     }
 
     /// All materials, for lanes.
@@ -111,8 +127,23 @@ fn shadow_origin(light: &PreparedLight, scene: Aabb) -> ShadowOrigin {
     }
 }
 
-fn opaque(geometry: &Geometry, materials: &[PreparedMaterial]) -> Option<BitSet> {
+fn internal_camera(camera: &Camera, space: &Space) -> Camera {
+    Camera { eye: space.point(camera.eye), look_at: space.point(camera.look_at), ..*camera }
+}
+
+fn opaque(primitive_materials: &[u32], materials: &[PreparedMaterial]) -> Option<BitSet> {
     let is_opaque = |&material: &u32| !materials[material as usize].is_transparent();
-    let all = geometry.materials.iter().all(is_opaque);
-    (!all).then(|| geometry.materials.iter().map(is_opaque).collect())
+    let all = primitive_materials.iter().all(is_opaque);
+    (!all).then(|| primitive_materials.iter().map(is_opaque).collect())
+}
+
+/// The material of each primitive, in the order of their numbers.
+fn primitive_materials(scene: &Scene) -> Arc<[u32]> {
+    let triangles = scene.meshes.iter().flat_map(|mesh| {
+        (0..mesh.triangles.len()).map(|i| mesh.triangle_materials.get(i).copied().unwrap_or(mesh.material))
+    });
+    let spheres = scene.spheres.iter().map(|sphere| sphere.2);
+    let shapes = scene.shapes.iter().map(|shape| shape.1);
+    let planes = scene.planes.iter().map(|plane| plane.1);
+    triangles.chain(spheres).chain(shapes).chain(planes).collect()
 }

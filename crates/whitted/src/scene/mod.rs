@@ -5,8 +5,10 @@
 
 mod auto;
 mod camera;
+mod change;
 mod check;
 mod description;
+mod entered;
 pub mod generate;
 mod geometry;
 mod light;
@@ -17,8 +19,10 @@ mod space;
 
 pub use auto::clay;
 pub use camera::{Camera, CameraRays};
+pub use change::{Change, difference};
 pub use check::SceneError;
 pub use description::{Background, Light, LightKind, Mesh, NamedCamera, NamedMaterial, Scene};
+pub use entered::EnteredBox;
 pub use geometry::Geometry;
 pub use look::Look;
 pub(crate) use look::ShadowOrigin;

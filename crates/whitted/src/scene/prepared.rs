@@ -1,7 +1,7 @@
 //! A scene that has been checked and is ready to be rendered.
 
 use super::check;
-use super::{Geometry, Look, Scene, SceneError};
+use super::{Change, Geometry, Look, NamedCamera, Scene, SceneError, difference};
 use crate::tree::BuildOptions;
 use std::sync::Arc;
 
@@ -24,6 +24,21 @@ impl Prepared {
         Ok(Self { geometry: Arc::new(geometry), look })
     }
 
+    /// The prepared scene after the change from `old`, from which this one was prepared, to `new`, and what that was:
+    /// as [`new`](Self::new), but the tree stays if the shapes are the same.
+    ///
+    /// # Errors
+    /// What [`SceneError`] lists.
+    pub fn after_change(&self, old: &Scene, new: &Scene, options: &BuildOptions) -> Result<(Self, Change), SceneError> {
+        let change = difference(old, new);
+        let prepared = match change {
+            Change::Nothing => self.clone(),
+            Change::Look => self.with_look_of(new)?,
+            Change::Geometry => Self::new(new, options)?,
+        };
+        Ok((prepared, change))
+    }
+
     /// The same shapes with the materials, lights, first camera, ambient light and background of `scene`, whose shapes
     /// must be those of the scene from which this one was prepared: nothing is rebuilt.
     ///
@@ -36,6 +51,16 @@ impl Prepared {
             return Err(SceneError::OtherShapes { expected, found });
         }
         let look = Look::new(scene, &self.geometry)?;
+        Ok(Self { geometry: Arc::clone(&self.geometry), look })
+    }
+
+    /// The same scene seen by another camera, in world space: takes no time.
+    ///
+    /// # Errors
+    /// [`SceneError::Camera`] if it sees nothing or everything.
+    pub fn with_camera(&self, camera: &NamedCamera) -> Result<Self, SceneError> {
+        check::camera(camera)?;
+        let look = self.look.with_camera(&camera.camera, self.geometry.space());
         Ok(Self { geometry: Arc::clone(&self.geometry), look })
     }
 

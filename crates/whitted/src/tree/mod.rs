@@ -11,6 +11,7 @@ mod all_hits;
 mod bit_set;
 mod brute_force;
 mod build;
+mod cells;
 mod expected_cost;
 mod filter;
 mod fit;
@@ -24,6 +25,7 @@ mod walk;
 mod wide;
 
 pub use bit_set::BitSet;
+pub(crate) use cells::Cell;
 pub use build::BuildOptions;
 pub use filter::Filter;
 pub use goal::Occlusion;
