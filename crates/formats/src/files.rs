@@ -3,8 +3,11 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 use crate::error::{Error, ErrorKind, Warning};
+use crate::mesh::MeshFile;
+use crate::reload::KnownMeshes;
 
 /// What a file may do to the machine that loads it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,6 +50,15 @@ pub(crate) struct Context<'a> {
     bytes_left: u64,
     warnings: Vec<Warning>,
     warnings_left_out: usize,
+    /// Meshes that need not be read again.
+    known: Option<&'a mut KnownMeshes>,
+}
+
+/// Where a mesh began to be read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Beginning {
+    files: usize,
+    warnings: usize,
 }
 
 impl<'a> Context<'a> {
@@ -59,6 +71,39 @@ impl<'a> Context<'a> {
             bytes_left: options.max_total_bytes,
             warnings: Vec::new(),
             warnings_left_out: 0,
+            known: None,
+        }
+    }
+
+    /// As [`closed`](Self::closed), with meshes that need not be read again.
+    pub(crate) fn knowing(options: &'a LoadOptions, known: &'a mut KnownMeshes) -> Self {
+        Self { known: Some(known), ..Self::closed(options) }
+    }
+
+    /// The mesh in the file `name` that the file `namer` names and the length of its files, if it is known from before.
+    pub(crate) fn known_mesh(&mut self, namer: &Path, name: &str) -> Result<Option<(u64, Arc<MeshFile>)>, Error> {
+        if self.known.is_none() {
+            return Ok(None);
+        }
+        let path = self.find(folder_of(namer), &portable(name))?;
+        let Some(known) = self.known.as_mut().and_then(|known| known.get(&path)).cloned() else { return Ok(None) };
+        let length = known.length();
+        self.charge(&path, length)?;
+        self.files.extend(known.files);
+        known.warnings.into_iter().for_each(|warning| self.warn(warning));
+        Ok(Some((length, known.mesh)))
+    }
+
+    /// Where the reading of a mesh begins.
+    pub(crate) fn beginning(&self) -> Beginning {
+        Beginning { files: self.files.len(), warnings: self.warnings.len() }
+    }
+
+    /// Keep a mesh whose reading began at `from` for the next load.
+    pub(crate) fn keep_mesh(&mut self, from: Beginning, mesh: &Arc<MeshFile>) {
+        let files = self.files[from.files..].to_vec();
+        if let (Some(known), Some(path)) = (&mut self.known, files.first().cloned()) {
+            known.insert(path, Arc::clone(mesh), files, self.warnings[from.warnings..].to_vec());
         }
     }
 

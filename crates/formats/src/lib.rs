@@ -30,6 +30,7 @@ mod ply;
 pub mod png;
 mod polygon;
 pub mod rays;
+mod reload;
 mod scene;
 mod smooth;
 mod source;
@@ -42,6 +43,8 @@ use whitted::scene::Scene;
 
 pub use error::{Error, ErrorKind, Excerpt, Place, Report, Warning};
 pub use files::LoadOptions;
+pub use reload::Loader;
+pub use scene::{camera_block, write_back};
 
 use files::Context;
 use mesh::MeshFile;
@@ -54,7 +57,7 @@ pub struct Loaded {
     pub scene: Scene,
     /// What was odd, but did not stop the loading.
     pub warnings: Vec<Warning>,
-    /// All files that were read, the scene first.
+    /// All files that the scene is made of, itself first: whoever shows it watches these.
     pub files: Vec<PathBuf>,
 }
 

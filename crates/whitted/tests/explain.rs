@@ -107,7 +107,7 @@ fn check_shape(sample: &SampleTree, settings: &Settings) {
         let parent = &sample.rays[parent];
         let is_shadow = matches!(ray.kind, RayKind::Shadow(_));
         assert_eq!(ray.generation, parent.generation + u32::from(!is_shadow));
-        assert!(is_shadow || ray.generation <= settings.depth || ray.end == RayEnd::DepthLimit, "{ray:?}");
+        assert!(is_shadow || ray.generation <= settings.depth || !ray.end.is_traced(), "{ray:?}");
         let near = |point: Vec3d| (point - hit.position).length() <= 1e-3 * (1.0 + parent.length);
         assert!(is_shadow || near(ray.origin), "{ray:?} leaves {hit:?}");
         let ends = [ray.origin, ray.origin + ray.direction * ray.length];

@@ -51,7 +51,8 @@ impl Answer<'_> {
             RayKind::Refracted => format!("refracted × {}", color(ray.weight)),
             RayKind::Shadow(light) => format!("light {}", light + 1),
         };
-        let gain = if ray.light == Vec3f::ZERO { String::new() } else { format!(": + {}", color(ray.light)) };
+        let gain = Some(color(ray.light)).filter(|light| light != "0").map(|light| format!(": + {light}"));
+        let gain = gain.unwrap_or_default();
         format!("{kind} {}{gain}", self.end(ray))
     }
 
@@ -93,7 +94,7 @@ fn color(color: Vec3f) -> String {
 /// Four significant digits, but no fewer than those before the point.
 fn number(value: f64) -> String {
     const DIGITS: i32 = 4;
-    const MOST_DECIMALS: i32 = 9;
+    const MOST_DECIMALS: i32 = 6;
     if value == 0.0 || !value.is_finite() {
         return format!("{}", value + 0.0);
     }
@@ -123,6 +124,7 @@ mod tests {
             (123456.789, "123457"),
             (2.34567, "2.346"),
             (-0.001234567, "-0.001235"),
+            (0.000012345, "0.000012"),
             (1e-12, "0"),
             (-1e-12, "0"),
             (f64::INFINITY, "inf"),

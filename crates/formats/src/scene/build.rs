@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use whitted::scene::generate::GeneratedSphere;
 use whitted::scene::{Mesh, NamedCamera, NamedMaterial, Scene};
@@ -11,7 +12,7 @@ use super::decode::At;
 use super::document::Fault;
 use super::sections::{GenerateSection, Materials, MeshSection, SceneFile};
 use crate::error::{Error, ErrorKind, quoted};
-use crate::files::Context;
+use crate::files::{Context, LoadOptions};
 use crate::mesh::MeshFile;
 use crate::source::Source;
 use crate::{Format, read_mesh, smooth, suggest};
@@ -21,24 +22,7 @@ const DEFAULT: &str = "default";
 
 /// The scene that `file` describes.
 pub(super) fn build(file: &SceneFile, source: Source<'_>, context: &mut Context<'_>) -> Result<Scene, Error> {
-    let mut builder = Builder {
-        source,
-        generated_left: context.options.max_generated,
-        context,
-        scene: Scene::default(),
-        materials: HashMap::new(),
-        mesh_files: HashMap::new(),
-    };
-    builder.check_version(&file.version)?;
-    file.render.apply(&mut builder.scene, &source, builder.context.options)?;
-    builder.cameras(file)?;
-    for light in &file.light {
-        let light = light.light().map_err(|fault| builder.error(fault))?;
-        builder.scene.lights.push(light);
-    }
-    for (name, section) in &file.material.0 {
-        builder.add_material(&name.value, section.material());
-    }
+    let mut builder = Builder::begin(file, source, context)?;
     builder.objects(file)?;
     file.mesh.iter().try_for_each(|mesh| builder.mesh(mesh))?;
     file.generate.iter().try_for_each(|section| builder.generate(section))?;
@@ -47,6 +31,12 @@ pub(super) fn build(file: &SceneFile, source: Source<'_>, context: &mut Context<
         builder.context.warn(source.error_whole(what).into_warning());
     }
     Ok(builder.scene)
+}
+
+/// What `file` says about cameras, lights, materials and the picture.
+pub(super) fn look(file: &SceneFile, source: Source<'_>) -> Result<Scene, Error> {
+    let options = LoadOptions::default();
+    Builder::begin(file, source, &mut Context::closed(&options)).map(|builder| builder.scene)
 }
 
 struct Builder<'a, 'c, 'o> {
@@ -58,10 +48,33 @@ struct Builder<'a, 'c, 'o> {
     /// Primitives that may still be generated.
     generated_left: u64,
     /// Mesh files read so far: their path, length, content, and the number of their first material if they have any.
-    mesh_files: HashMap<PathBuf, (u64, MeshFile, Option<u32>)>,
+    mesh_files: HashMap<PathBuf, (u64, Arc<MeshFile>, Option<u32>)>,
 }
 
-impl Builder<'_, '_, '_> {
+impl<'a, 'c, 'o> Builder<'a, 'c, 'o> {
+    /// All but the things.
+    fn begin(file: &SceneFile, source: Source<'a>, context: &'c mut Context<'o>) -> Result<Self, Error> {
+        let mut builder = Builder {
+            source,
+            generated_left: context.options.max_generated,
+            context,
+            scene: Scene::default(),
+            materials: HashMap::new(),
+            mesh_files: HashMap::new(),
+        };
+        builder.check_version(&file.version)?;
+        file.render.apply(&mut builder.scene, &source, builder.context.options)?;
+        builder.cameras(file)?;
+        for light in &file.light {
+            let light = light.light().map_err(|fault| builder.error(fault))?;
+            builder.scene.lights.push(light);
+        }
+        for (name, section) in &file.material.0 {
+            builder.add_material(&name.value, section.material());
+        }
+        Ok(builder)
+    }
+
     fn error(&self, fault: Fault) -> Error {
         super::error(&self.source, fault)
     }
@@ -175,10 +188,17 @@ impl Builder<'_, '_, '_> {
             let error = self.source.error(name.span.clone(), what).blame(ErrorKind::Unsupported);
             return Err(error.hint("known here: .obj, .ply"));
         };
+        if let Some((length, known)) = self.context.known_mesh(self.source.file, &name.value).map_err(here)? {
+            self.mesh_files.insert(path.clone(), (length, known, None));
+            return Ok(path);
+        }
+        let beginning = self.context.beginning();
         let (path, bytes) = self.context.read_named(self.source.file, &name.value).map_err(here)?;
         let length = bytes.len() as u64;
         let mut file = read_mesh(format, &path, bytes, self.context)?;
         file.mesh.name = name.value.clone();
+        let file = Arc::new(file);
+        self.context.keep_mesh(beginning, &file);
         self.mesh_files.insert(path.clone(), (length, file, None));
         Ok(path)
     }

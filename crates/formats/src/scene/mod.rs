@@ -14,9 +14,12 @@ mod schema;
 mod sections;
 mod toml;
 mod values;
+mod write;
 
 #[cfg(feature = "schema")]
 pub(crate) use schema::schema;
+
+pub use write::{camera_block, write_back};
 
 use whitted::scene::Scene;
 
@@ -24,6 +27,7 @@ use crate::error::Error;
 use crate::files::Context;
 use crate::source::{Source, utf8};
 use document::{Fault, Node};
+use sections::SceneFile;
 
 /// Read a scene written in TOML.
 pub(crate) fn read_toml(source: Source<'_>, context: &mut Context<'_>) -> Result<Scene, Error> {
@@ -36,14 +40,22 @@ pub(crate) fn read_json(source: Source<'_>, context: &mut Context<'_>) -> Result
 }
 
 fn read(source: Source<'_>, context: &mut Context<'_>, parse: fn(&str) -> Result<Node, Fault>) -> Result<Scene, Error> {
-    let mut document = parse(utf8(&source)?).map_err(|fault| error(&source, fault))?;
+    let file = decode(&source, parse)?;
+    build::build(&file, source, context)
+}
+
+/// What a scene written in TOML says about cameras, lights, materials and the picture; nothing that it names is opened.
+fn look_of(source: Source<'_>) -> Result<Scene, Error> {
+    build::look(&decode(&source, toml::parse)?, source)
+}
+
+fn decode(source: &Source<'_>, parse: fn(&str) -> Result<Node, Fault>) -> Result<SceneFile, Error> {
+    let mut document = parse(utf8(source)?).map_err(|fault| error(source, fault))?;
     sections::name_cameras(&mut document);
     if document.get("version").is_none() {
         return Err(source.error_whole("the key \"version\" is missing").hint("a scene begins with version = 1"));
     }
-    let file = decode::decode(&document).map_err(|fault| error(&source, fault))?;
-    drop(document);
-    build::build(&file, source, context)
+    decode::decode(&document).map_err(|fault| error(source, fault))
 }
 
 /// The error about a fault of the text `source`.

@@ -25,8 +25,8 @@ mod walk;
 mod wide;
 
 pub use bit_set::BitSet;
-pub(crate) use cells::Cell;
 pub use build::BuildOptions;
+pub(crate) use cells::Cell;
 pub use filter::Filter;
 pub use goal::Occlusion;
 pub use query::{Counts, Query, Scratch};

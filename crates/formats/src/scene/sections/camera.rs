@@ -43,14 +43,18 @@ impl CameraSection {
 pub(in crate::scene) fn name_cameras(document: &mut Node) {
     let Value::Table(sections) = &mut document.value else { return };
     let Some((key, camera)) = sections.iter_mut().find(|(key, _)| key.name == "camera") else { return };
-    let Value::Table(entries) = &camera.value else { return };
-    let named = entries.iter().all(|(_, node)| matches!(node.value, Value::Table(_)));
-    if entries.is_empty() || !named {
+    if is_single_camera(camera) {
         let name = Key { span: key.span.clone(), name: UNNAMED.to_owned() };
         let single = std::mem::replace(&mut camera.value, Value::Null);
         let single = Node { span: camera.span.clone(), value: single };
         camera.value = Value::Table(vec![(name, single)]);
     }
+}
+
+/// Whether the value of `camera` is a single camera without a name.
+pub(in crate::scene) fn is_single_camera(camera: &Node) -> bool {
+    let Value::Table(entries) = &camera.value else { return false };
+    entries.is_empty() || !entries.iter().all(|(_, node)| matches!(node.value, Value::Table(_)))
 }
 
 /// One camera or a table of them.

@@ -35,13 +35,10 @@ pub(in crate::scene) struct MaterialSection {
 
 impl MaterialSection {
     pub(in crate::scene) fn material(&self) -> Material {
-        /// Window glass, for materials that reflect like a dielectric but state no index.
-        const GLASS: f32 = 1.5;
         let default = Material::default();
         let specular = self.specular.as_ref();
         let (reflect, reflectance) =
             self.reflect.as_ref().map_or((default.reflect, default.reflectance), |r| (r.strength, r.reflectance));
-        let plain_ior = if reflectance == Reflectance::Constant { default.ior } else { GLASS };
         Material {
             color: self.color.as_ref().map_or(default.color, |texture| texture.0),
             ambient: self.ambient.map_or(default.ambient, |x| x.single()),
@@ -52,10 +49,17 @@ impl MaterialSection {
             reflect,
             reflectance,
             transmit: self.transmit.map_or(default.transmit, |strength| strength.0),
-            ior: self.ior.map_or(plain_ior, |x| x.single()),
+            ior: self.ior.map_or(plain_ior(reflectance), |x| x.single()),
             absorb: self.absorb.as_ref().map_or(default.absorb, |absorb| absorb.0),
         }
     }
+}
+
+/// The index of refraction of a material that states none.
+pub(in crate::scene) fn plain_ior(reflectance: Reflectance) -> f32 {
+    /// Window glass, for materials that reflect like a dielectric.
+    const GLASS: f32 = 1.5;
+    if reflectance == Reflectance::Constant { Material::default().ior } else { GLASS }
 }
 
 /// A colour, or a checkerboard.

@@ -17,10 +17,10 @@ use super::decode::At;
 use super::document::{Key, Node, Value};
 use super::values::Count;
 
-pub(super) use camera::{CameraSection, name_cameras};
+pub(super) use camera::{CameraSection, is_single_camera, name_cameras};
 pub(super) use generate::{GenerateSection, Materials};
 pub(super) use light::LightSection;
-pub(super) use material::MaterialSection;
+pub(super) use material::{MaterialSection, plain_ior};
 pub(super) use mesh::MeshSection;
 pub(super) use objects::{BoxSection, ConeSection, CylinderSection, DiscSection, PlaneSection, SphereSection};
 pub(super) use render::RenderSection;

@@ -160,12 +160,7 @@ pub fn aovs_classic(
     pictures(wanted, frame, &Context { caster: Some(classic.caster), ..context }, clock)
 }
 
-fn pictures(
-    wanted: &[Aov],
-    frame: &Frame,
-    context: &Context,
-    clock: Clock,
-) -> Result<Vec<AovPicture>, Cancelled> {
+fn pictures(wanted: &[Aov], frame: &Frame, context: &Context, clock: Clock) -> Result<Vec<AovPicture>, Cancelled> {
     let clock = wanted.contains(&Aov::Time).then_some(clock);
     let costs = match wanted.iter().any(|aov| aov.is_cost()) {
         true => cost::of_pixels(context, frame, clock)?,

@@ -1,0 +1,192 @@
+//! Writing changed values back into the text of a scene.
+//!
+//! The values are found by their places in the text and replaced one by one; what is not replaced stays, byte by byte:
+//! comments, order, blanks, keys. The changed text is read again before it is given away, and must say what was wanted.
+
+mod literal;
+mod look;
+mod material;
+mod patch;
+
+use std::path::Path;
+
+use whitted::scene::{Camera, Change, NamedCamera, Scene, Settings, difference};
+
+use super::document::{Fault, Node, Value};
+use super::{look_of, toml};
+use crate::error::{Error, ErrorKind, quoted};
+use crate::source::Source;
+use patch::Patch;
+
+/// The lines of a section for a camera, to be put into a scene: `[camera.NAME]`, or `[camera]` if `name` is empty.
+pub fn camera_block(name: &str, camera: &Camera) -> String {
+    let entries = look::whole_camera(camera).into_iter().map(|(key, value)| format!("{key} = {value}\n"));
+    format!("{}\n{}", camera_header(name), entries.collect::<String>())
+}
+
+fn camera_header(name: &str) -> String {
+    if name.is_empty() { "[camera]".to_owned() } else { format!("[camera.{}]", literal::key(name)) }
+}
+
+/// `text`, a scene in TOML, with the values that differ between `old`, the scene that was read from it, and `new`.
+///
+/// Written back are settings, ambient light, background, and the values of cameras, lights and materials that the text
+/// states; and cameras that are new by their name. `file` stands for the text in messages.
+///
+/// # Errors
+/// [`ErrorKind::Unsupported`] for all other changes, for what a material absorbs, and where the text is written in a way
+/// in which a value has no place. [`ErrorKind::Input`] if the text is not a scene.
+pub fn write_back(file: &Path, text: &str, old: &Scene, new: &Scene) -> Result<String, Error> {
+    let body = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let source = Source { file, bytes: body.as_bytes() };
+    let before = look_of(source)?;
+    let wanted = wanted(&before, old, new).map_err(|what| Error::new(ErrorKind::Unsupported, file, what))?;
+    let fail = |fault| super::error(&source, fault).blame(ErrorKind::Unsupported);
+    let document = toml::parse(body).map_err(fail)?;
+    let mut patch = Patch::new(body);
+    write(&mut patch, &document, &before, &wanted).map_err(fail)?;
+    let written = patch.apply();
+    let found = look_of(Source { file, bytes: written.as_bytes() });
+    if !found.is_ok_and(|found| says(&found, &wanted)) {
+        let what = "the text is written in a way into which this change cannot be put";
+        return Err(Error::new(ErrorKind::Unsupported, file, what));
+    }
+    Ok(format!("{}{written}", &text[..text.len() - body.len()]))
+}
+
+/// What the text shall say: `before` with all that differs between `old` and `new`.
+fn wanted(before: &Scene, old: &Scene, new: &Scene) -> Result<Scene, String> {
+    if difference(old, new) == Change::Geometry {
+        return Err("changed shapes cannot be written back".to_owned());
+    }
+    let mut wanted = before.clone();
+    settings(&mut wanted.settings, &old.settings, &new.settings);
+    take_over(&mut wanted.ambient, &old.ambient, &new.ambient);
+    take_over(&mut wanted.background, &old.background, &new.background);
+    lights(&mut wanted, old, new)?;
+    materials(&mut wanted, old, new)?;
+    cameras(&mut wanted, old, new)?;
+    Ok(wanted)
+}
+
+fn take_over<T: PartialEq + Clone>(value: &mut T, old: &T, new: &T) {
+    if old != new {
+        value.clone_from(new);
+    }
+}
+
+/// Only what differs: other settings may stand in for those of the text.
+fn settings(settings: &mut Settings, old: &Settings, new: &Settings) {
+    take_over(&mut settings.size, &old.size, &new.size);
+    take_over(&mut settings.depth, &old.depth, &new.depth);
+    take_over(&mut settings.min_weight, &old.min_weight, &new.min_weight);
+    take_over(&mut settings.antialias, &old.antialias, &new.antialias);
+    take_over(&mut settings.antialias_max, &old.antialias_max, &new.antialias_max);
+    take_over(&mut settings.sampling, &old.sampling, &new.sampling);
+    take_over(&mut settings.shadows, &old.shadows, &new.shadows);
+    take_over(&mut settings.exposure, &old.exposure, &new.exposure);
+    take_over(&mut settings.tone, &old.tone, &new.tone);
+    take_over(&mut settings.seed, &old.seed, &new.seed);
+}
+
+fn lights(wanted: &mut Scene, old: &Scene, new: &Scene) -> Result<(), String> {
+    if old.lights == new.lights {
+        return Ok(());
+    }
+    if [old.lights.len(), new.lights.len()] != [wanted.lights.len(); 2] {
+        return Err("lights that the file does not state cannot be written back".to_owned());
+    }
+    let pairs = old.lights.iter().zip(&new.lights);
+    wanted.lights.iter_mut().zip(pairs).for_each(|(light, (old, new))| take_over(light, old, new));
+    Ok(())
+}
+
+fn materials(wanted: &mut Scene, old: &Scene, new: &Scene) -> Result<(), String> {
+    let names = |scene: &Scene| scene.materials.iter().map(|named| named.name.clone()).collect::<Vec<_>>();
+    if names(old) != names(new) {
+        return Err("materials cannot be added, removed or renamed".to_owned());
+    }
+    for (old, new) in old.materials.iter().zip(&new.materials).filter(|(old, new)| old != new) {
+        let stated = wanted.materials.iter_mut().find(|named| named.name == new.name);
+        let Some(stated) = stated else {
+            return Err(format!("the material {} does not stand in this file", quoted(&new.name)));
+        };
+        take_over(&mut stated.material, &old.material, &new.material);
+    }
+    Ok(())
+}
+
+/// Cameras are known by their names: their order may differ.
+fn cameras(wanted: &mut Scene, old: &Scene, new: &Scene) -> Result<(), String> {
+    let named = |scene: &Scene, name: &str| scene.cameras.iter().find(|camera| camera.name == name).cloned();
+    if let Some(lost) = old.cameras.iter().find(|camera| named(new, &camera.name).is_none()) {
+        return Err(format!("the camera {} cannot be removed or renamed", quoted(&lost.name)));
+    }
+    for camera in &new.cameras {
+        let stated = wanted.cameras.iter().position(|stated| stated.name == camera.name);
+        match (named(old, &camera.name), stated) {
+            (Some(before), _) if before == *camera => {}
+            (Some(_), Some(index)) => wanted.cameras[index] = camera.clone(),
+            (None, None) if !wanted.cameras.is_empty() => wanted.cameras.push(camera.clone()),
+            // A file without a camera gets lights and a floor too: with one, it would lose them.
+            _ => return Err("the file states no camera: the scene would no longer be furnished".to_owned()),
+        }
+    }
+    Ok(())
+}
+
+/// Put everything in which `wanted` differs from `before` into the text.
+fn write(patch: &mut Patch, document: &Node, before: &Scene, wanted: &Scene) -> Result<(), Fault> {
+    let render = look::render(before, wanted);
+    match document.get("render") {
+        Some(table) => look::set_all(patch, table, render)?,
+        None => {
+            let entries: Vec<_> = render.into_iter().filter_map(|(key, value)| Some((key, value?))).collect();
+            if !entries.is_empty() {
+                patch.append("[render]", &entries);
+            }
+        }
+    }
+    let lights =
+        document.get("light").map_or(&[][..], |node| if let Value::List(items) = &node.value { items } else { &[] });
+    for (table, (old, new)) in lights.iter().zip(before.lights.iter().zip(&wanted.lights)) {
+        look::light(patch, table, old, new)?;
+    }
+    let materials = document.get("material");
+    for (old, new) in before.materials.iter().zip(&wanted.materials) {
+        if let Some(table) = materials.and_then(|node| node.get(&new.name)) {
+            material::material(patch, table, &old.material, &new.material)?;
+        }
+    }
+    write_cameras(patch, document, &before.cameras, &wanted.cameras)
+}
+
+fn write_cameras(
+    patch: &mut Patch,
+    document: &Node,
+    before: &[NamedCamera],
+    wanted: &[NamedCamera],
+) -> Result<(), Fault> {
+    let Some(table) = document.get("camera") else { return Ok(()) };
+    let is_single = super::sections::is_single_camera(table);
+    for (old, new) in before.iter().zip(wanted) {
+        let table = if is_single { Some(table) } else { table.get(&new.name) };
+        if let Some(table) = table {
+            look::set_all(patch, table, look::camera(&old.camera, &new.camera))?;
+        }
+    }
+    let added = &wanted[before.len()..];
+    if let (true, false, Some(first)) = (is_single, added.is_empty(), before.first()) {
+        // Where there are several, each has its name.
+        patch.replace(table, camera_header(&first.name));
+    }
+    for camera in added {
+        patch.append(&camera_header(&camera.name), &look::whole_camera(&camera.camera));
+    }
+    Ok(())
+}
+
+/// Whether two scenes say the same but for shapes.
+fn says(found: &Scene, wanted: &Scene) -> bool {
+    difference(found, wanted) == Change::Nothing
+}
