@@ -1,18 +1,24 @@
 //! All contestants for one set of rays, and who won.
 
 use crate::contest::{self, Contestant, Times};
+use crate::one_by_one::OneByOne;
 use crate::ours::{Judge, Ours};
 use crate::peer::{Peer, differing};
 use crate::ray_sets::RaySet;
 use crate::row::{PeerCell, Row};
+use crate::scenes::Scene;
 use std::ops::Range;
+use whitted::query::RayScene;
 use whitted::ray::RayBatch;
 use whitted::tree::Query;
 
-/// Ours in batches of several sizes, and every call of Embree.
+/// Contestants on one side.
+type Team<'a> = Vec<Box<dyn Contestant + 'a>>;
+
+/// Ours in batches of several sizes, or ray by ray, and the calls of Embree that compare.
 pub(crate) struct Field<'a> {
     set: &'a RaySet,
-    contestants: Vec<Box<dyn Contestant + 'a>>,
+    contestants: Team<'a>,
     times: Vec<Option<Times>>,
     /// Each size of batch by name, with those of ours that have it: one for each orientation of the set.
     ours: Vec<(&'static str, Range<usize>)>,
@@ -20,24 +26,45 @@ pub(crate) struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// Everybody gets the rays in the shape that it likes.
-    pub(crate) fn new(
+    /// Ours in batches of these sizes, and every call of Embree.
+    pub(crate) fn of_batches(
         set: &'a RaySet,
         query: Query<'a>,
         batches: &[(&'static str, usize)],
         peer: Option<&'a Peer<'_>>,
     ) -> Self {
-        let mut contestants: Vec<Box<dyn Contestant + 'a>> = Vec::new();
-        let mut ours = Vec::new();
-        for &(batch, size) in batches {
+        let of_size = |&(batch, size)| {
+            let ours = move |(rays, note)| -> Box<dyn Contestant + 'a> {
+                Box::new(Ours::new(query, rays, size, set.kind.is_occlusion(), note))
+            };
+            (batch, set.orientations().into_iter().map(ours).collect())
+        };
+        Self::new(set, batches.iter().map(of_size).collect(), peer.map(|peer| peer.calls(set)))
+    }
+
+    /// Rays one by one: our interface for one ray, and Embree's.
+    pub(crate) fn of_one(
+        set: &'a RaySet,
+        batch: &'static str,
+        scene: &'a RayScene,
+        peer: Option<&'a Peer<'_>>,
+    ) -> Self {
+        let ours = |(rays, note)| -> Box<dyn Contestant + 'a> {
+            Box::new(OneByOne::new(scene, rays, set.kind.is_occlusion(), note))
+        };
+        let ours = set.orientations().into_iter().map(ours).collect();
+        Self::new(set, vec![(batch, ours)], peer.map(|peer| peer.single_calls(set)))
+    }
+
+    fn new(set: &'a RaySet, batches: Vec<(&'static str, Team<'a>)>, peers: Option<Team<'a>>) -> Self {
+        let (mut contestants, mut ours) = (Vec::new(), Vec::new());
+        for (batch, team) in batches {
             let first = contestants.len();
-            for (rays, note) in set.orientations() {
-                contestants.push(Box::new(Ours::new(query, rays, size, set.kind.is_occlusion(), note)));
-            }
+            contestants.extend(team);
             ours.push((batch, first..contestants.len()));
         }
         let first_peer = contestants.len();
-        contestants.extend(peer.map(|peer| peer.calls(set)).unwrap_or_default());
+        contestants.extend(peers.unwrap_or_default());
         let peers = first_peer..contestants.len();
         Self { set, contestants, times: Vec::new(), ours, peers }
     }
@@ -51,7 +78,7 @@ impl<'a> Field<'a> {
     ///
     /// # Panics
     /// Before [`run`](Self::run), or if there is no such size.
-    pub(crate) fn row(&mut self, scene: &str, batch: &'static str, judge: &Judge<'_>) -> Row {
+    pub(crate) fn row(&mut self, scene: &Scene, batch: &'static str, judge: &Judge<'_>) -> Row {
         let range = self.ours.iter().find(|(name, _)| *name == batch).expect("a size that was asked for").1.clone();
         let first = range.start;
         let (own, own_times) = self.fastest(range).expect("ours never drop out");
@@ -60,21 +87,23 @@ impl<'a> Field<'a> {
         let own_answers = self.answers(own);
         let best_peer = self.fastest(self.peers.clone());
         let suspects = best_peer.as_ref().map(|&(best, _)| differing(rays, &own_answers, &self.answers(best)));
-        let judged = self.judge(judge, rays, &own_answers, suspects.as_deref().unwrap_or_default());
+        let (wrong, judged) = self.judge(judge, rays, &own_answers, suspects.as_deref().unwrap_or_default());
         let peer = best_peer.zip(suspects).map(|((best, times), suspects)| PeerCell {
             mrays: mrays(&times),
             call: self.contestants[best].name(),
             ratio: own_times.speed_up_over(&times),
-            wrong: suspects.len(),
+            differ: suspects.len(),
         });
         Row {
-            scene: scene.into(),
+            scene: scene.name.clone(),
+            primitives: scene.len(),
             kind: self.set.kind,
             batch,
             rays: rays.len(),
             ours_mrays: mrays(&own_times),
             ours_note: self.contestants[own].name(),
             peer,
+            wrong,
             judged,
         }
     }

@@ -8,9 +8,11 @@
 
 mod builds;
 mod contest;
+mod curve;
 mod embree;
 mod field;
 mod machine;
+mod one_by_one;
 mod options;
 mod ours;
 mod packets;
@@ -32,6 +34,8 @@ use std::process::ExitCode;
 enum Command {
     /// Ray queries beside Embree
     Rays(rays::Options),
+    /// How the time for a ray grows with the number of primitives
+    Curve(curve::Options),
     /// Tree builds beside Embree
     Build(builds::Options),
     /// Whole renders beside POV-Ray and Tachyon
@@ -53,6 +57,7 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<(), Box<dyn Error>> {
     match command {
         Command::Rays(options) => rays::run(&options).map(drop),
+        Command::Curve(options) => curve::run(&options).map(drop),
         Command::Build(options) => builds::run(&options).map(drop),
         Command::Pictures(options) => pictures::run(&options).map(drop),
         Command::Record(options) => record::run(&options),

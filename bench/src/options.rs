@@ -1,6 +1,6 @@
 //! Command-line options that several commands share.
 
-use crate::embree::{Embree, EmbreeError};
+use crate::embree::{Device, Embree, EmbreeError};
 use clap::{Args, ValueEnum};
 use simd::Level;
 use std::fmt;
@@ -106,12 +106,20 @@ impl EmbreeOptions {
         };
         Embree::load(path).map(Some)
     }
+
+    /// A device of one thread with the chosen instruction set, if a path is known.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load), or Embree refuses the instruction set.
+    pub(crate) fn one_thread(&self) -> Result<Option<Device>, EmbreeError> {
+        self.load()?.map(|embree| embree.device(1, self.embree_isa.as_deref())).transpose()
+    }
 }
 
 /// Which scenes.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SceneOptions {
-    /// Scenes by name, or binary PLY files (with a .cam file beside them); all standard scenes if not given
+    /// Scenes by name, or files of any format that `whitted` reads; all standard scenes if not given
     #[arg(long = "scene", value_name = "NAME", num_args = 1..)]
     pub scenes: Vec<String>,
     /// Scenes to leave out

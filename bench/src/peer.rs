@@ -30,15 +30,23 @@ impl<'d> Peer<'d> {
 
     /// Every call that can answer the set: single rays and packets of 8 and 16, coherent and not, for either build.
     pub(crate) fn calls(&self, set: &RaySet) -> Vec<Box<dyn Contestant + '_>> {
-        let mut calls = Vec::new();
+        let mut calls = self.single_calls(set);
         if set.kind.is_occlusion() {
-            self.add::<Rays<Align16, 1>>(set, &mut calls);
             self.add::<Rays<Align32, 8>>(set, &mut calls);
             self.add::<Rays<Align64, 16>>(set, &mut calls);
         } else {
-            self.add::<RayHits<Align16, 1>>(set, &mut calls);
             self.add::<RayHits<Align32, 8>>(set, &mut calls);
             self.add::<RayHits<Align64, 16>>(set, &mut calls);
+        }
+        calls
+    }
+
+    /// The calls that answer one ray, for either build.
+    pub(crate) fn single_calls(&self, set: &RaySet) -> Vec<Box<dyn Contestant + '_>> {
+        let mut calls = Vec::new();
+        match set.kind.is_occlusion() {
+            true => self.add::<Rays<Align16, 1>>(set, &mut calls),
+            false => self.add::<RayHits<Align16, 1>>(set, &mut calls),
         }
         calls
     }

@@ -4,7 +4,8 @@
 //! in packets of 16, packets of 8 and structs, reset before each pass outside the clock. Our batches are reset, sorted
 //! and bucketed inside it. Both deliver t, primitive, u and v, or whether a shadow ray is blocked. Each side may turn
 //! shadow rays round. Embree's best call counts, over both flags and both builds; so does our better orientation.
-//! Embree's calls know no batches: they answer the same loop whatever our batch is.
+//! Embree's calls know no batches: they answer the same loop whatever our batch is. Batch 1 is another contest: our
+//! interface for one ray against Embree's.
 
 use crate::embree::Device;
 use crate::field::Field;
@@ -17,10 +18,13 @@ use crate::row::Row;
 use crate::scenes::{self, Source};
 use clap::{Args, ValueEnum};
 use serde_json::Value;
+use simd::Level;
 use std::error::Error;
 use std::path::PathBuf;
+use whitted::geometry::Primitives;
+use whitted::query::RayScene;
 use whitted::ray::HitBatch;
-use whitted::tree::{Query, Scratch};
+use whitted::tree::{Query, Scratch, TreeKind};
 
 /// Options of `rays`.
 #[derive(Args, Clone, Debug)]
@@ -35,7 +39,7 @@ pub(crate) struct Options {
     #[arg(long = "rays", value_enum, value_name = "KIND", num_args = 1..)]
     kinds: Vec<RayKind>,
     /// Sizes of our batches; all if not given
-    #[arg(long = "batch", value_parser = ["all", "4096", "1024", "64"], value_name = "SIZE", num_args = 1..)]
+    #[arg(long = "batch", value_parser = [WHOLE, "4096", "1024", "64", ONE], value_name = "SIZE", num_args = 1..)]
     batches: Vec<String>,
     /// Timed passes, of which the median counts
     #[arg(long, default_value_t = PASSES)]
@@ -64,23 +68,30 @@ impl Options {
         Self { embree, scenes, ours, kinds: Vec::new(), batches: Vec::new(), passes, max_rays, json: None }
     }
 
+    /// In one batch each.
+    pub(crate) fn in_whole_sets(self) -> Self {
+        Self { batches: vec![WHOLE.into()], ..self }
+    }
+
     fn wants(&self, batch: &str) -> bool {
         self.batches.is_empty() || self.batches.iter().any(|wanted| wanted == batch)
     }
 }
 
+/// The name of the row of whole sets.
+const WHOLE: &str = "all";
+/// The name of the row of single rays.
+const ONE: &str = "1";
+
 /// Sizes of our batches: the whole set first.
-const BATCHES: [(&str, usize); 4] = [("all", usize::MAX), ("4096", 4096), ("1024", 1024), ("64", 64)];
+const BATCHES: [(&str, usize); 4] = [(WHOLE, usize::MAX), ("4096", 4096), ("1024", 1024), ("64", 64)];
 
 /// Measure and print; returns the rows as JSON.
 ///
 /// # Errors
 /// A scene cannot be had, Embree fails, or the JSON file cannot be written.
 pub(crate) fn run(options: &Options) -> Result<Value, Box<dyn Error>> {
-    let device = match options.embree.load()? {
-        Some(embree) => Some(embree.device(1, options.embree.embree_isa.as_deref())?),
-        None => None,
-    };
+    let device = options.embree.one_thread()?;
     let about = about(options, device.as_ref());
     println!("{about}\n{}", Row::header());
     let mut rows = Vec::new();
@@ -114,7 +125,11 @@ fn about(options: &Options, device: Option<&Device>) -> String {
     )
 }
 
-fn measure_scene(
+/// Measure one scene and hand out its rows.
+///
+/// # Errors
+/// The scene cannot be had, or Embree fails.
+pub(crate) fn measure_scene(
     options: &Options,
     source: &Source,
     device: Option<&Device>,
@@ -136,16 +151,30 @@ fn measure_scene(
         query.closest_hit(rays, &mut hits, &mut Scratch::default());
         hits
     });
+    let single = single(options, &primitives);
     let kinds = if options.kinds.is_empty() { RayKind::value_variants() } else { &options.kinds };
     for &kind in kinds {
         let mut set = origins.set(kind);
         set.thin(options.max_rays.unwrap_or(usize::MAX));
-        if !set.rays.is_empty() {
-            let batches: Vec<_> = BATCHES.into_iter().filter(|&(name, _)| options.wants(name)).collect();
-            let mut field = Field::new(&set, query, &batches, peer.as_ref());
+        if set.rays.is_empty() {
+            continue;
+        }
+        let batches: Vec<_> = BATCHES.into_iter().filter(|&(name, _)| options.wants(name)).collect();
+        let mut field = Field::of_batches(&set, query, &batches, peer.as_ref());
+        field.run(options.passes);
+        batches.iter().for_each(|&(batch, _)| emit(field.row(&scene, batch, &judge)));
+        if let Some(single) = &single {
+            let mut field = Field::of_one(&set, ONE, single, peer.as_ref());
             field.run(options.passes);
-            batches.iter().for_each(|&(batch, _)| emit(field.row(&source.name, batch, &judge)));
+            emit(field.row(&scene, ONE, &judge));
         }
     }
     Ok(())
+}
+
+/// The scene behind the interface for one ray, if its row is wanted; it takes the instruction set that it likes.
+fn single(options: &Options, primitives: &Primitives) -> Option<RayScene> {
+    let is_ours = options.ours.level() == Level::best();
+    (options.wants(ONE) && is_ours)
+        .then(|| RayScene::from_primitives(primitives.clone(), &TreeKind::from(options.ours.tree).into()))
 }

@@ -7,6 +7,8 @@ use serde_json::{Value, json};
 pub(crate) struct Row {
     /// Name of the scene.
     pub scene: String,
+    /// Number of its primitives.
+    pub primitives: usize,
     /// The set of rays.
     pub kind: RayKind,
     /// Size of our batches.
@@ -19,8 +21,10 @@ pub(crate) struct Row {
     pub ours_note: String,
     /// Embree's part, if it is there.
     pub peer: Option<PeerCell>,
-    /// Answers of ours that differ from brute force, and how many were compared.
-    pub judged: (usize, usize),
+    /// Answers of ours that differ from brute force: none is expected.
+    pub wrong: usize,
+    /// How many of ours were compared with brute force: a sample, and those that differ from Embree's.
+    pub judged: usize,
 }
 
 /// Embree's part of a row.
@@ -31,14 +35,14 @@ pub(crate) struct PeerCell {
     pub call: String,
     /// Our rate over its rate, the median of passes.
     pub ratio: f64,
-    /// Rays for which the answers differ.
-    pub wrong: usize,
+    /// Rays that the two sides answer differently.
+    pub differ: usize,
 }
 
 impl Row {
     /// The line above all rows.
     pub(crate) fn header() -> String {
-        let numbers = "  ours Mrays/s  Embree Mrays/s  best call              ratio  wrong";
+        let numbers = "  ours Mrays/s  Embree Mrays/s  best call              ratio differ  wrong judged";
         format!("{:<12} {:<8} {:>5}{numbers}", "scene", "rays", "batch")
     }
 
@@ -47,12 +51,10 @@ impl Row {
         let start = format!("{:<12} {:<8} {:>5} {:>13.2}", self.scene, self.kind, self.batch, self.ours_mrays);
         let peer = self.peer.as_ref().map_or_else(
             || format!("  {:>14}  {:<21} {:>6} {:>6}", "-", "-", "-", "-"),
-            |peer| format!("  {:>14.2}  {:<21} {:>6.2} {:>6}", peer.mrays, peer.call, peer.ratio, peer.wrong),
+            |peer| format!("  {:>14.2}  {:<21} {:>6.2} {:>6}", peer.mrays, peer.call, peer.ratio, peer.differ),
         );
         let note = if self.ours_note.is_empty() { String::new() } else { format!("  ours{}", self.ours_note) };
-        let (wrong, judged) = self.judged;
-        let fault = if wrong == 0 { String::new() } else { format!("  OURS FALSE: {wrong} of {judged} judged") };
-        start + &peer + &note + &fault
+        start + &peer + &format!(" {:>6} {:>6}", self.wrong, self.judged) + &note
     }
 
     /// The row with stable keys; what Embree would say is null without it.
@@ -60,6 +62,7 @@ impl Row {
         let peer = self.peer.as_ref();
         json!({
             "scene": self.scene,
+            "primitives": self.primitives,
             "rays": self.kind.to_string(),
             "batch": self.batch,
             "count": self.rays,
@@ -68,9 +71,9 @@ impl Row {
             "embree_mrays": peer.map(|peer| peer.mrays),
             "embree_call": peer.map(|peer| &peer.call),
             "ratio": peer.map(|peer| peer.ratio),
-            "wrong": peer.map(|peer| peer.wrong),
-            "ours_false": self.judged.0,
-            "ours_judged": self.judged.1,
+            "wrong": self.wrong,
+            "judged": self.judged,
+            "differ": peer.map(|peer| peer.differ),
         })
     }
 }

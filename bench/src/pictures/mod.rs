@@ -6,7 +6,10 @@
 //!
 //! All renderers run in turn, and medians count. Trace times are CPU seconds: POV-Ray reports them; for the others it is
 //! the share of the process' CPU time that tracing has of the wall-clock times of all phases.
+//!
+//! Then frames per second: one of the scenes again and again, with one thread and with two.
 
+mod frames;
 mod renderers;
 
 use crate::contest::median;
@@ -49,7 +52,9 @@ impl Options {
 }
 
 /// The scenes whose figures count.
-const SCENES: [&str; 4] = ["mix-1000", "mix-50000", "all4-1000", "bunny"];
+const SCENES: [&str; 4] = [MOVING, "mix-50000", "all4-1000", "bunny"];
+/// The scene that should be smooth on a screen.
+const MOVING: &str = "mix-1000";
 
 /// A folder that is removed in the end.
 struct TemporaryFolder(PathBuf);
@@ -100,6 +105,10 @@ pub(crate) fn run(options: &Options) -> Result<Value, Box<dyn Error>> {
             continue;
         }
         rows.extend(measure(name, &places, options.rounds.max(1), has_peer_scenes)?);
+    }
+    let moving = options.scenes.iter().filter(|name| *name == MOVING);
+    for (name, text) in moving.filter_map(|name| Some((name, our_scene(name)?))) {
+        rows.extend(frames::run(name, &text)?);
     }
     let rows = Value::Array(rows);
     if let Some(path) = &options.json {

@@ -1,9 +1,11 @@
-//! Meshes from binary PLY files, with their view in a text file of the same name that ends in `.cam`.
+//! Scenes from files of any format that `whitted` reads.
 
 use super::{Mesh, Scene, View};
-use std::io::{self, BufRead, BufReader, Read};
+use formats::LoadOptions;
+use std::error::Error;
 use std::path::{Path, PathBuf};
-use whitted::math::{Aabb, Vec3f};
+use whitted::math::{Aabb, Vec3d, Vec3f};
+use whitted::scene::{self, Camera, LightKind, Space};
 
 /// The mesh files in a folder; none if there is no such folder.
 pub(super) fn ply_files(folder: &Path) -> Vec<PathBuf> {
@@ -11,27 +13,65 @@ pub(super) fn ply_files(folder: &Path) -> Vec<PathBuf> {
     entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|end| end == "ply")).collect()
 }
 
-/// Load a mesh and its view; without a `.cam` file the view is chosen by the mesh's size.
-pub(super) fn load(path: &Path, name: &str) -> io::Result<Scene> {
-    let mesh = read_ply(&mut BufReader::new(std::fs::File::open(path)?))?;
+/// Load triangles, spheres and a view, in the coordinates in which `whitted` traces them.
+///
+/// The view is that of a text file of the same name that ends in `.cam`; without one that of the file's first camera and
+/// first light with a place; what the file does not say is chosen so that everything is seen. Shapes that Embree does not
+/// know are left out, and standard error says so.
+///
+/// # Errors
+/// What is wrong with the file, or with its `.cam`.
+pub(super) fn load(path: &Path, name: &str) -> Result<Scene, Box<dyn Error>> {
+    let options = LoadOptions { furnish: false, ..LoadOptions::default() };
+    let mut scene = formats::load(path, &options)?.scene;
+    let left_out = scene.shapes.len() + scene.planes.len();
+    if left_out > 0 {
+        eprintln!("{name}: left out {left_out} planes, discs, boxes, cylinders and cones, which Embree does not know");
+        (scene.shapes, scene.planes) = (Vec::new(), Vec::new());
+    }
+    let (primitives, space) = scene.primitives()?;
     let view = match std::fs::read_to_string(path.with_extension("cam")) {
-        Ok(text) => parse_view(&text).ok_or_else(|| invalid("the .cam file lacks a line or a number"))?,
-        Err(_) => View::around(Aabb::around(mesh.vertices.iter().copied())),
+        Ok(text) => parse_view(&text).ok_or(format!("{name}.cam lacks a line or a number"))?.moved(&space),
+        Err(_) => View::of(&scene, primitives.bounds(), &space),
     };
-    Ok(Scene { name: name.into(), mesh, spheres: Vec::new(), view })
+    let mesh = Mesh { vertices: primitives.vertices().to_vec(), triangles: triangles(&scene) };
+    Ok(Scene { name: name.into(), mesh, spheres: primitives.spheres().to_vec(), view })
 }
 
-fn invalid(message: &str) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, message)
+/// The triangles of all meshes, by the numbers of their vertices among all.
+fn triangles(scene: &scene::Scene) -> Vec<[u32; 3]> {
+    let mut first = 0;
+    let mut triangles = Vec::new();
+    for mesh in &scene.meshes {
+        triangles.extend(mesh.triangles.iter().map(|corners| corners.map(|corner| first + corner)));
+        first += mesh.positions.len() as u32;
+    }
+    triangles
 }
 
 impl View {
-    /// A view of everything in `bounds`, from above and the side.
-    fn around(bounds: Aabb) -> Self {
-        let (at, size) = (bounds.center(), bounds.size().max_component());
-        let from = |x, y, z| at + Vec3f::new(x, y, z) * size;
-        let up = Vec3f::new(0.0, 1.0, 0.0);
-        Self { eye: from(0.6, 0.5, 1.3), at, up, fov: 40.0, light: from(1.5, 2.5, 2.0), bounds: None }
+    /// How a scene shows itself; `bounds` are those of its primitives, in the coordinates of `space`.
+    fn of(scene: &scene::Scene, bounds: Aabb, space: &Space) -> Self {
+        const SQUARE: f64 = 1.0;
+        let place = |light: &scene::Light| match light.kind {
+            LightKind::Point { position } | LightKind::Spot { position, .. } => Some(space.point_f32(position)),
+            LightKind::Directional { .. } => None,
+        };
+        let camera = match scene.cameras.first().map(|named| named.camera) {
+            Some(camera) => Camera { eye: space.point(camera.eye), look_at: space.point(camera.look_at), ..camera },
+            None => Camera::framing(bounds.lo.to_f64(), bounds.hi.to_f64(), SQUARE),
+        };
+        let above = bounds.center() + Vec3f::new(1.5, 2.5, 2.0) * bounds.size().max_component();
+        let [eye, at, up] = [camera.eye, camera.look_at, camera.up].map(Vec3d::to_f32);
+        let light = scene.lights.iter().find_map(place).unwrap_or(above);
+        Self { eye, at, up, fov: camera.vfov as f32, light, bounds: None }
+    }
+
+    /// The same view of a scene that is moved to `space`.
+    fn moved(self, space: &Space) -> Self {
+        let point = |p: Vec3f| space.point_f32(p.to_f64());
+        let bounds = self.bounds.map(|bounds| Aabb::new(point(bounds.lo), point(bounds.hi)));
+        Self { eye: point(self.eye), at: point(self.at), light: point(self.light), bounds, ..self }
     }
 }
 
@@ -54,89 +94,39 @@ fn parse_view(text: &str) -> Option<View> {
     })
 }
 
-/// The one flavour of PLY that benchmark meshes have: little-endian, vertices of three floats, triangles as lists with
-/// a byte's count and 32-bit numbers.
-fn read_ply(file: &mut impl BufRead) -> io::Result<Mesh> {
-    let (vertices, triangles) = read_header(file)?;
-    let mut mesh = Mesh::default();
-    for _ in 0..vertices {
-        let [x, y, z] = [number(file)?, number(file)?, number(file)?].map(f32::from_bits);
-        mesh.vertices.push(Vec3f::new(x, y, z));
-    }
-    for _ in 0..triangles {
-        let mut count = [0];
-        file.read_exact(&mut count)?;
-        let corners = [number(file)?, number(file)?, number(file)?];
-        if count != [3] || corners.iter().any(|&corner| corner as usize >= vertices) {
-            return Err(invalid("a face is no triangle of the file's vertices"));
-        }
-        mesh.triangles.push(corners);
-    }
-    Ok(mesh)
-}
-
-fn number(file: &mut impl Read) -> io::Result<u32> {
-    let mut bytes = [0; 4];
-    file.read_exact(&mut bytes)?;
-    Ok(u32::from_le_bytes(bytes))
-}
-
-/// Numbers of vertices and faces; refuses any other layout than [`read_ply`] reads.
-fn read_header(file: &mut impl BufRead) -> io::Result<(usize, usize)> {
-    const LAYOUT: [&str; 4] = ["property float x", "property float y", "property float z", "property list uchar"];
-    let (mut vertices, mut faces, mut properties) = (0, 0, Vec::new());
-    loop {
-        let mut line = String::new();
-        if file.read_line(&mut line)? == 0 {
-            return Err(invalid("no end_header"));
-        }
-        match line.trim().split_once(' ').unwrap_or((line.trim(), "")) {
-            ("end_header", _) => break,
-            ("format", format) if format != "binary_little_endian 1.0" => return Err(invalid("not little-endian")),
-            ("element", element) => match element.split_once(' ').map(|(name, count)| (name, count.parse())) {
-                Some(("vertex", Ok(count))) => vertices = count,
-                Some(("face", Ok(count))) => faces = count,
-                _ => return Err(invalid("unknown element")),
-            },
-            ("property", _) => properties.push(line.trim().to_owned()),
-            _ => {}
-        }
-    }
-    let fits = properties.len() == LAYOUT.len() && properties.iter().zip(LAYOUT).all(|(p, known)| p.starts_with(known));
-    if fits { Ok((vertices, faces)) } else { Err(invalid("other properties than x, y, z and a list of vertices")) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const HEADER: &str = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
-        property float z\nelement face 1\nproperty list uchar uint vertex_indices\nend_header\n";
-
-    fn file(corners: [u32; 3]) -> Vec<u8> {
-        let numbers = (1..10).map(|i| (i as f32).to_le_bytes());
-        let corners = corners.map(u32::to_le_bytes);
-        HEADER.bytes().chain(numbers.flatten()).chain([3]).chain(corners.into_iter().flatten()).collect()
-    }
-
-    #[test]
-    fn a_triangle_is_read() {
-        let mesh = read_ply(&mut &file([2, 0, 1])[..]).unwrap();
-        assert_eq!(mesh.vertices[1], Vec3f::new(4.0, 5.0, 6.0));
-        assert_eq!(mesh.triangles, [[2, 0, 1]]);
-    }
-
-    #[test]
-    fn unknown_vertices_and_short_files_are_refused() {
-        assert!(read_ply(&mut &file([0, 1, 3])[..]).is_err());
-        assert!(read_ply(&mut &file([0, 1, 2])[..HEADER.len() + 40]).is_err());
-        assert!(read_ply(&mut "ply\nformat ascii 1.0\nend_header\n".as_bytes()).is_err());
-    }
 
     #[test]
     fn a_view_needs_all_its_lines() {
         let text = "eye 1 2 3\nat 0 0 0\nup 0 1 0\nfovy 40\nlight 3 5 4\nbounds -1 -1 -1 1 1 2";
         assert_eq!(parse_view(text).unwrap().bounds.unwrap().hi.z, 2.0);
         assert!(parse_view(&text.replace("up", "down")).is_none());
+    }
+
+    #[test]
+    fn meshes_share_one_numbering_of_vertices() {
+        let mesh = scene::Mesh { positions: vec![[0.0; 3]; 4], triangles: vec![[0, 1, 3]], ..scene::Mesh::default() };
+        let scene = scene::Scene { meshes: vec![mesh.clone(), mesh], ..scene::Scene::default() };
+        assert_eq!(triangles(&scene), [[0, 1, 3], [4, 5, 7]]);
+    }
+
+    #[test]
+    fn a_scene_file_brings_its_own_view() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/mix-1000.toml");
+        let scene = load(&path, "mix").unwrap();
+        assert_eq!((scene.len(), scene.mesh.triangles.len()), (1000, 0));
+        assert_eq!(scene.view.eye, super::super::spheres::VIEW.eye);
+        assert!(load(Path::new("nothing.ply"), "nothing").is_err());
+    }
+
+    #[test]
+    fn everything_is_seen_where_the_file_says_nothing() {
+        let bounds = Aabb::new(Vec3f::new(1e6, 0.0, 0.0), Vec3f::new(1e6 + 2.0, 1.0, 1.0));
+        let space = Space::around(bounds.lo.to_f64(), bounds.hi.to_f64());
+        let moved = Aabb::new(space.point_f32(bounds.lo.to_f64()), space.point_f32(bounds.hi.to_f64()));
+        let view = View::of(&scene::Scene::default(), moved, &space);
+        assert!((view.at - moved.center()).length() < 1e-3 && (view.eye - view.at).length() < 10.0, "{view:?}");
     }
 }

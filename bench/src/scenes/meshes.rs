@@ -7,20 +7,25 @@ use whitted::math::{Aabb, SplitMix64, Vec3d, Vec3f};
 
 const UP: Vec3f = Vec3f::new(0.0, 1.0, 0.0);
 
-/// A square of 1024 × 1024 cells whose heights are displaced midpoints: 2 097 152 triangles over [−1, 1]².
-pub(super) fn terrain() -> Scene {
-    const CELLS: usize = 1024;
-    let heights = midpoint_heights(CELLS);
-    let coordinate = |i: usize| 2.0 * i as f32 / CELLS as f32 - 1.0;
-    let rows = CELLS + 1;
-    let vertex = |i: usize| Vec3f::new(coordinate(i % rows), heights[i], coordinate(i / rows));
+/// A square of `cells` × `cells` cells of two triangles whose heights are displaced midpoints, over [−1, 1]².
+pub(super) fn terrain(cells: u32) -> Scene {
+    let cells = cells as usize;
+    // Midpoints need a power of two: other numbers of cells take the nearest points of the next larger lattice.
+    let lattice = cells.next_power_of_two();
+    let heights = midpoint_heights(lattice);
+    let coordinate = |i: usize| 2.0 * i as f32 / lattice as f32 - 1.0;
+    let rows = cells + 1;
+    let vertex = |i: usize| {
+        let [x, z] = [i % rows, i / rows].map(|i| i * lattice / cells);
+        Vec3f::new(coordinate(x), heights[z * (lattice + 1) + x], coordinate(z))
+    };
     let vertices = (0..rows * rows).map(vertex).collect();
     let cell = |i: usize| {
-        let a = (i / CELLS * rows + i % CELLS) as u32;
+        let a = (i / cells * rows + i % cells) as u32;
         let (b, c, d) = (a + 1, a + rows as u32, a + rows as u32 + 1);
         [[a, c, b], [b, c, d]]
     };
-    let triangles = (0..CELLS * CELLS).flat_map(cell).collect();
+    let triangles = (0..cells * cells).flat_map(cell).collect();
     let view = View {
         eye: Vec3f::new(0.3, 0.7, 1.9),
         at: Vec3f::new(0.0, 0.1, 0.0),
@@ -68,12 +73,11 @@ fn mean_around(heights: &[f32], rows: usize, y: usize, x: usize, step: usize, ar
     sum / count
 }
 
-/// 12 000 bent tubes of 20 rings with 6 corners from the middle to the surface of a ball: 2 880 000 triangles.
-pub(super) fn hairball() -> Scene {
-    const TUBES: u32 = 12_000;
-    let mut rng = SplitMix64::new(u64::from(TUBES));
+/// Bent tubes of 20 rings with 6 corners, 240 triangles each, from the middle to the surface of a ball.
+pub(super) fn hairball(tubes: u32) -> Scene {
+    let mut rng = SplitMix64::new(u64::from(tubes));
     let mut mesh = Mesh::default();
-    (0..TUBES).for_each(|_| tube(&mut mesh, &mut rng));
+    (0..tubes).for_each(|_| tube(&mut mesh, &mut rng));
     let bounds = Some(Aabb::around(mesh.vertices.iter().copied()));
     let view = View {
         eye: Vec3f::new(0.5, 0.6, 3.2),
@@ -121,7 +125,7 @@ mod tests {
 
     #[test]
     fn meshes_have_the_triangles_that_their_names_say() {
-        for (scene, triangles) in [(terrain(), 2_097_152), (hairball(), 2_880_000)] {
+        for (scene, triangles) in [(terrain(1024), 2_097_152), (terrain(71), 10_082), (hairball(12_000), 2_880_000)] {
             assert_eq!(scene.mesh.triangles.len(), triangles);
             let vertices = scene.mesh.vertices.len() as u32;
             assert!(scene.mesh.triangles.iter().flatten().all(|&vertex| vertex < vertices));

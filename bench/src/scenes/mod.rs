@@ -1,9 +1,10 @@
-//! The scenes that are measured: real meshes from files, spheres and meshes made here.
+//! The scenes that are measured: those of files, and spheres and meshes made here.
 
 mod files;
 mod meshes;
 mod spheres;
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use whitted::geometry::{Primitives, Sphere};
 use whitted::math::{Aabb, Vec3f};
@@ -72,10 +73,11 @@ pub(crate) struct Source {
 
 enum Make {
     File(PathBuf),
-    Generate(Generator),
+    Generate(Generator, u32),
 }
 
-type Generator = fn() -> Scene;
+/// Makes a scene of a size: a number of spheres, levels, cells or tubes.
+type Generator = fn(u32) -> Scene;
 
 impl Source {
     /// The file at `path`, named after it.
@@ -84,30 +86,52 @@ impl Source {
         Self { name, make: Make::File(path.to_owned()) }
     }
 
+    fn generated(name: &str, make: Generator, size: u32) -> Self {
+        Self { name: name.into(), make: Make::Generate(make, size) }
+    }
+
     /// Load or make the scene.
     ///
     /// # Errors
     /// What is wrong with its file.
-    pub(crate) fn scene(&self) -> Result<Scene, String> {
+    pub(crate) fn scene(&self) -> Result<Scene, Box<dyn Error>> {
         match &self.make {
-            Make::File(path) => files::load(path, &self.name).map_err(|error| format!("{}: {error}", path.display())),
-            Make::Generate(make) => Ok(Scene { name: self.name.clone(), ..make() }),
+            Make::File(path) => files::load(path, &self.name),
+            Make::Generate(make, size) => Ok(Scene { name: self.name.clone(), ..make(*size) }),
         }
     }
 }
 
 /// The scenes made here, by name.
-const GENERATED: &[(&str, Generator)] = &[
-    ("spheres10", || spheres::cube(10)),
-    ("spheres100", || spheres::cube(100)),
-    ("spheres1000", || spheres::cube(1000)),
-    ("spheres50000", || spheres::cube(50_000)),
-    ("spheres1M", || spheres::cube(1_000_000)),
-    ("flake7k", || spheres::flake(4)),
-    ("flake66k", || spheres::flake(5)),
-    ("terrain2M", meshes::terrain),
-    ("hairball2M9", meshes::hairball),
+const GENERATED: &[(&str, Generator, u32)] = &[
+    ("spheres10", spheres::cube, 10),
+    ("spheres100", spheres::cube, 100),
+    ("spheres1000", spheres::cube, 1000),
+    ("spheres50000", spheres::cube, 50_000),
+    ("spheres1M", spheres::cube, 1_000_000),
+    ("flake7k", spheres::flake, 4),
+    ("flake66k", spheres::flake, 5),
+    ("terrain2M", meshes::terrain, 1024),
+    ("hairball2M9", meshes::hairball, 12_000),
 ];
+
+/// A scene to come, and how many primitives it will have.
+pub(crate) type Growing = (u32, Source);
+
+/// Families of scenes that differ in nothing but their number of primitives, from a thousand tenfold to ten millions;
+/// terrains have about as many.
+pub(crate) fn growing() -> [(&'static str, [Growing; 5]); 2] {
+    let cubes = [1000, 10_000, 100_000, 1_000_000, 10_000_000];
+    // Along a side, and each is two triangles.
+    let cells = [22, 71, 224, 707, 2236];
+    let sized = |family: &str, count: u32, make: Generator, size: u32| {
+        (count, Source::generated(&format!("{family}{count}"), make, size))
+    };
+    [
+        ("spheres", cubes.map(|count| sized("spheres", count, spheres::cube, count))),
+        ("terrain", cells.map(|side| sized("terrain", 2 * side * side, meshes::terrain, side))),
+    ]
+}
 
 /// Every scene of the standard list: the files of the folder `scenes` in `shared`, small ones first, and what is made
 /// here.
@@ -115,11 +139,11 @@ pub(crate) fn standard(shared: Option<&Path>) -> Vec<Source> {
     let mut files: Vec<PathBuf> = shared.map(|shared| files::ply_files(&shared.join("scenes"))).unwrap_or_default();
     files.sort_by_key(|path| std::fs::metadata(path).map_or(0, |data| data.len()));
     let files = files.iter().map(|path| Source::file(path));
-    let generated = GENERATED.iter().map(|&(name, make)| Source { name: name.into(), make: Make::Generate(make) });
+    let generated = GENERATED.iter().map(|&(name, make, size)| Source::generated(name, make, size));
     files.chain(generated).collect()
 }
 
-/// The scenes that `names` ask for, each the name of a standard scene or the path of a mesh file; all for none.
+/// The scenes that `names` ask for, each the name of a standard scene or the path of a scene file; all for none.
 ///
 /// # Errors
 /// A name that is neither.

@@ -17,7 +17,7 @@ fn singles(spheres: &[GeneratedSphere]) -> Vec<Sphere> {
 }
 
 /// The view of the comparison with other renderers.
-const VIEW: View = View {
+pub(super) const VIEW: View = View {
     eye: Vec3f::new(2.2, 1.5, 3.4),
     at: Vec3f::ZERO,
     up: Vec3f::new(0.0, 1.0, 0.0),
