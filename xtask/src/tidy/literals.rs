@@ -4,7 +4,8 @@ use super::Complaint;
 use super::source::{Source, closing, is_identifier};
 use std::ops::Range;
 
-const NAMED_ONLY: &[&str] = &["crates/whitted/src/tree/", "crates/whitted/src/geometry/"];
+const NAMED_ONLY: &[&str] =
+    &["crates/whitted/src/tree/", "crates/whitted/src/geometry/", "crates/whitted/src/classic/"];
 
 /// Values that need no name: identities, one half and doubling.
 const PLAIN: &[&str] = &["0.0", "0.5", "1.0", "2.0"];

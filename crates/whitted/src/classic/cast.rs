@@ -83,15 +83,14 @@ impl Caster<'_> {
 
     /// Offer everything on the ray's way; returns the limit that is left of its range.
     fn cast<G: Goal, O: Observer>(&self, ray: &Ray, goal: &mut G, observer: &mut O) -> f32 {
-        if !(ray.origin.is_finite() && ray.direction.is_finite()) {
+        let ray = CastRay::new(ray, self.objects.fit.scale(), self.objects.wants_shear());
+        if !ray.is_sound() {
             return ray.t_max;
         }
-        let ray = CastRay::new(ray, self.objects.fit.scale(), self.objects.wants_shear());
         let cast = Cast { caster: self, ray, goal, observer };
         match self.math {
             Math::Scalar => cast.with(Plain),
-            Math::Vector(level) => simd::dispatch(level, cast),
-            Math::Estimated(level) => simd::dispatch(level, Estimated(cast)),
+            Math::Vector(level) | Math::Estimated(level) => simd::dispatch(level, cast),
         }
     }
 }
@@ -109,19 +108,8 @@ impl<G: Goal, O: Observer> Kernel for Cast<'_, G, O> {
 
     #[inline(always)]
     fn run<S: Simd>(self, token: S) -> f32 {
-        self.with(Packed { token, estimates: false })
-    }
-}
-
-/// The same with estimated roots.
-struct Estimated<'a, G, O>(Cast<'a, G, O>);
-
-impl<G: Goal, O: Observer> Kernel for Estimated<'_, G, O> {
-    type Output = f32;
-
-    #[inline(always)]
-    fn run<S: Simd>(self, token: S) -> f32 {
-        self.0.with(Packed { token, estimates: true })
+        let estimates = matches!(self.caster.math, Math::Estimated(_));
+        self.with(Packed { token, estimates })
     }
 }
 

@@ -4,9 +4,9 @@ use crate::geometry::ShearedRay;
 use crate::geometry::sphere::SphereRay;
 use crate::math::{Aabb, Vec3d, Vec3f};
 use crate::ray::Ray;
-use crate::shading::one::{one, value};
-use crate::tree::Fit;
-use simd::Scalar;
+use crate::shading::one::{one, ones, value};
+use crate::tree::{Fit, sound};
+use simd::{MaskLanes, Scalar};
 
 /// A ray in the scaled coordinates of objects and trees.
 #[repr(align(16))]
@@ -42,6 +42,12 @@ impl CastRay {
             origin_f64: ray.origin.to_f64(),
             direction_f64: ray.direction.to_f64(),
         }
+    }
+
+    /// Whether it can hit anything at all: the same rays as in production.
+    #[inline(always)]
+    pub(super) fn is_sound(&self) -> bool {
+        sound(Scalar, ones(self.origin), ones(self.direction)).any()
     }
 
     /// The largest coordinate of the origin.

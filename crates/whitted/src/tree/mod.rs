@@ -36,7 +36,7 @@ pub use wide::{Tree, TreeReport};
 pub(crate) use build::{Bounds, Solid};
 pub(crate) use fit::Fit;
 pub(crate) use goal::{Any, Closest, Goal, Next};
-pub(crate) use walk::offer_crossings;
+pub(crate) use walk::{offer_crossings, sound};
 
 /// Which splits the builder may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -30,7 +30,7 @@ pub(in crate::classic) fn walk<M: Arithmetic, G: Goal, O: Observer>(
         walker.observer.step(NodeId(number as u32), [entry, exit]);
         walker.observer.leaf(NodeId(number as u32), [entry, exit]);
         for &id in grid.objects(number) {
-            if mailbox.is_new(id) {
+            if !(G::ENDS_RAYS && walker.has_ended()) && mailbox.is_new(id) {
                 walker.test(id);
             }
         }

@@ -40,6 +40,9 @@ impl<M: Arithmetic, G: Goal, O: Observer> Walker<'_, M, G, O> {
     #[inline(always)]
     pub(super) fn leaf(&mut self, ids: &[u32]) {
         for &id in ids {
+            if G::ENDS_RAYS && self.has_ended() {
+                return;
+            }
             self.test(id);
         }
     }
@@ -48,7 +51,7 @@ impl<M: Arithmetic, G: Goal, O: Observer> Walker<'_, M, G, O> {
     #[inline(always)]
     pub(super) fn all(&mut self) {
         for id in 0..self.objects.len() as u32 {
-            if self.has_ended() {
+            if G::ENDS_RAYS && self.has_ended() {
                 return;
             }
             self.test(id);

@@ -9,6 +9,7 @@ mod slabs;
 mod stream;
 
 pub(super) use prepared::PreparedRays;
+pub(crate) use prepared::sound;
 use prepared::{Packets, Records};
 pub(super) use stream::Lists;
 

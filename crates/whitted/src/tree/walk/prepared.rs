@@ -435,7 +435,7 @@ fn reciprocal<F: F32Lanes>(token: F::Token, component: F) -> F {
 
 /// Unset for rays that hit nothing: NaN, infinite origins, directions that are zero or extreme.
 #[inline(always)]
-fn sound<F: F32Lanes>(token: F::Token, origin: Vec3<F>, direction: Vec3<F>) -> F::Mask {
+pub(crate) fn sound<F: F32Lanes>(token: F::Token, origin: Vec3<F>, direction: Vec3<F>) -> F::Mask {
     // A sum of sizes is NaN if a component is, and infinite if one is.
     let reach = origin.x.abs() + origin.y.abs() + origin.z.abs();
     let size = direction.x.abs() + direction.y.abs() + direction.z.abs();
