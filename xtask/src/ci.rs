@@ -34,6 +34,33 @@ pub(crate) const STEPS: &[Step] = &[
     },
     // The README gives this command to every reader: the CI must run the very same.
     Step { name: "test", purpose: "all tests", action: Action::Cargo(&["test", "--workspace"], None) },
+    // By themselves: without them nobody compiles a window system to test a ray tracer.
+    Step {
+        name: "viewer-clippy",
+        purpose: "lints of the window and its panels",
+        action: Action::Cargo(
+            &[
+                "clippy",
+                "--locked",
+                "-p=whitted-viewer",
+                "-p=whitted-cli",
+                "--features=whitted-cli/viewer",
+                "--all-targets",
+                "--",
+                "-D",
+                "warnings",
+            ],
+            None,
+        ),
+    },
+    Step {
+        name: "viewer",
+        purpose: "tests of the window with real mouse and keys (needs Xvfb, xdotool and ImageMagick)",
+        action: Action::Cargo(
+            &["test", "-p=whitted-viewer", "-p=whitted-cli", "--features=whitted-cli/viewer", "--lib", "--test=viewer"],
+            None,
+        ),
+    },
     Step {
         name: "deny",
         purpose: "licences and duplicates of dependencies (needs cargo-deny)",

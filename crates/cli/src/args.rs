@@ -48,6 +48,32 @@ pub(crate) enum Command {
     /// Find what each ray of a table hits first
     #[command(after_help = TABLES)]
     Trace(TraceArguments),
+    /// Look around in a scene, interactively, while its file is edited
+    #[command(after_help = EXIT_CODES)]
+    View(Box<ViewArguments>),
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct ViewArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Pictures a second that are kept up while things move
+    #[arg(long, value_name = "N", default_value = "30", value_parser = parse_rate)]
+    pub(crate) fps_target: f64,
+    /// Open no window; do what the lines of this file say (docs/viewer.md)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) script: Option<PathBuf>,
+    /// Open no window; save what it would show when the picture is finished (.png)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) screenshot: Option<PathBuf>,
+    /// Threads [default: one per core]
+    #[arg(short, long, value_name = "N", value_parser = parse_threads)]
+    pub(crate) threads: Option<usize>,
+    /// Splits that the tree may use; fast is built sooner and walked slower [default: best]
+    #[arg(long, value_name = "best|fast|kd|none", value_parser = parse_named(&TREES))]
+    pub(crate) tree: Option<TreeKind>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArguments,
 }
 
 #[derive(Debug, Args)]
@@ -102,7 +128,7 @@ pub(crate) struct CheckArguments {
     pub(crate) verbosity: Verbosity,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct SceneArguments {
     /// Scene (.toml, .json, .nff) or bare mesh (.obj, .ply)
     pub(crate) scene: PathBuf,
@@ -144,7 +170,7 @@ pub(crate) struct RenderArguments {
 }
 
 /// Options that change the picture; each left out keeps what the scene says.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Picture")]
 pub(crate) struct PictureArguments {
     /// Width and height in pixels
@@ -317,6 +343,11 @@ fn parse_threads(text: &str) -> Result<usize, String> {
         Ok(threads @ 1..=MAX_THREADS) => Ok(threads),
         _ => Err(format!("expected a number from 1 to {MAX_THREADS}")),
     }
+}
+
+fn parse_rate(text: &str) -> Result<f64, String> {
+    const RATES: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
+    text.parse().ok().filter(|rate| RATES.contains(rate)).ok_or_else(|| "expected a number from 1 to 1000".to_owned())
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

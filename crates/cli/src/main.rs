@@ -24,6 +24,11 @@ mod settings;
 mod stopwatch;
 mod trace;
 mod variant;
+#[cfg(feature = "viewer")]
+mod view;
+#[cfg(not(feature = "viewer"))]
+#[path = "no_view.rs"]
+mod view;
 
 use clap::Parser;
 use std::process::ExitCode;
@@ -34,5 +39,6 @@ fn main() -> ExitCode {
         args::Command::Check(arguments) => check::run(&arguments),
         args::Command::Explain(arguments) => explain::run(&arguments),
         args::Command::Trace(arguments) => trace::run(&arguments),
+        args::Command::View(arguments) => view::run(&arguments),
     })
 }

@@ -3,10 +3,12 @@
 mod random_scene;
 
 use random_scene::random_scene;
+use std::sync::Mutex;
 use whitted::classic::{Caster, Grid, KdTree, Math, Objects, Split, Structure, TriangleTest, Walk};
+use whitted::math::Vec3f;
 use whitted::render::{
-    Cancel, Classic, Execution, Frame, Method, PixelRect, Region, Silent, Unwatched, render, render_classic,
-    render_rect,
+    Cancel, Classic, Execution, Frame, Method, PixelRect, Progress, Region, Renderer, Silent, Unwatched, render,
+    render_classic, render_rect,
 };
 use whitted::scene::{Antialias, Prepared, Scene, Settings, Shadows};
 use whitted::tree::{BuildOptions, TreeKind, WalkKind};
@@ -176,4 +178,51 @@ fn a_cancelled_render_stops() {
     cancel.cancel();
     let prepared = prepare(&random_scene(1), TreeKind::Best);
     assert!(render(&prepared, &settings(1), &Execution::default(), &Silent, &cancel).is_err());
+}
+
+/// A picture put together from what a render tells, which cancels it when so many regions are done.
+struct Told<'a> {
+    rect: PixelRect,
+    pixels: Mutex<Vec<Vec3f>>,
+    cancel: &'a Cancel,
+    cancel_after: usize,
+}
+
+impl Progress for Told<'_> {
+    fn regions_done(&self, _: u32, done: usize, _: usize) {
+        if done >= self.cancel_after {
+            self.cancel.cancel();
+        }
+    }
+
+    fn painted(&self, rect: &PixelRect, colors: &mut dyn Iterator<Item = Vec3f>) {
+        let mut pixels = self.pixels.lock().unwrap();
+        rect.pixels().zip(colors).for_each(|(pixel, color)| pixels[self.rect.index(pixel)] = color);
+    }
+
+    fn refined(&self, pixels: &mut dyn Iterator<Item = ([u32; 2], Vec3f)>) {
+        let mut all = self.pixels.lock().unwrap();
+        pixels.for_each(|(pixel, color)| all[self.rect.index(pixel)] = color);
+    }
+}
+
+#[test]
+fn memory_that_was_used_before_changes_nothing_and_the_sink_hears_of_every_pixel() {
+    let renderer = Renderer::default();
+    let execution = Execution { region: Region::Rectangle(16, 16), ..Execution::default() };
+    for seed in 90..98 {
+        let (scene, settings) = (random_scene(seed), settings(seed));
+        let prepared = prepare(&scene, TreeKind::Best);
+        let rect = PixelRect { x: 3, y: 5, width: 50, height: 40 };
+        for cancel_after in [3, usize::MAX] {
+            let cancel = Cancel::new();
+            let pixels = Mutex::new(vec![Vec3f::splat(-1.0); rect.len()]);
+            let told = Told { rect, pixels, cancel: &cancel, cancel_after };
+            let frame = renderer.render(&prepared, &settings, &execution, &rect, &told, &cancel, &Unwatched);
+            let Ok(frame) = frame else { continue };
+            let fresh = render_rect(&prepared, &settings, &execution, &rect, &Silent, &Cancel::new(), &Unwatched);
+            assert_same(&fresh.expect("not cancelled"), &frame, &format!("scene {seed}"));
+            assert_eq!(told.pixels.into_inner().unwrap(), frame.image.pixels, "scene {seed}");
+        }
+    }
 }

@@ -65,8 +65,7 @@ pub fn render_rect<P: Probe>(
     cancel: &Cancel,
     probe: &P,
 ) -> Result<Frame, Cancelled> {
-    let context = Context::new(prepared, settings, execution, cancel);
-    render_in(context, rect, progress, probe)
+    Renderer::default().render(prepared, settings, execution, rect, progress, cancel, probe)
 }
 
 /// A scene with the paper's structures.
@@ -96,27 +95,54 @@ pub fn render_classic<P: Probe>(
     let execution = Execution { method: Method::Recursive, ..*execution };
     let context = Context::new(classic.prepared, settings, &execution, cancel);
     let context = Context { caster: Some(classic.caster), ..context };
-    render_in(context, rect, progress, probe)
+    Renderer::default().render_in(context, rect, progress, probe)
 }
 
-fn render_in<P: Probe>(
-    context: Context<'_>,
-    rect: &PixelRect,
-    progress: &dyn Progress,
-    probe: &P,
-) -> Result<Frame, Cancelled> {
-    let rect = rect.intersection(&PixelRect::whole(context.settings.size));
-    if rect.is_empty() {
-        let nothing = FirstPass::new(PixelRect::EMPTY);
-        return Ok(Frame::of(nothing, rect, Statistics::default(), Statistics::default()));
+/// Renders one picture after another in the same memory: for moving pictures, whose frames take about as long as getting
+/// fresh memory for each.
+#[derive(Debug, Default)]
+pub struct Renderer {
+    workspaces: Workspaces,
+}
+
+impl Renderer {
+    /// As [`render_rect`].
+    ///
+    /// # Errors
+    /// If `cancel` was set before the picture was finished.
+    pub fn render<P: Probe>(
+        &self,
+        prepared: &Prepared,
+        settings: &Settings,
+        execution: &Execution,
+        rect: &PixelRect,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+        probe: &P,
+    ) -> Result<Frame, Cancelled> {
+        self.render_in(Context::new(prepared, settings, execution, cancel), rect, progress, probe)
     }
-    let rule = EdgeRule::new(context.settings);
-    let job = Job { context, rule, progress, probe, workspaces: Workspaces::default() };
-    let (pass, statistics, apron) = job.first_pass(&rect)?;
-    let refined = if job.rule.never() { Vec::new() } else { job.refine(&pass, &rect)? };
-    let mut frame = Frame::of(pass, rect, statistics, apron);
-    refined.iter().for_each(|(pixels, statistics)| frame.refine(pixels, statistics));
-    Ok(frame)
+
+    fn render_in<P: Probe>(
+        &self,
+        context: Context<'_>,
+        rect: &PixelRect,
+        progress: &dyn Progress,
+        probe: &P,
+    ) -> Result<Frame, Cancelled> {
+        let rect = rect.intersection(&PixelRect::whole(context.settings.size));
+        if rect.is_empty() {
+            let nothing = FirstPass::new(PixelRect::EMPTY);
+            return Ok(Frame::of(nothing, rect, Statistics::default(), Statistics::default()));
+        }
+        let rule = EdgeRule::new(context.settings);
+        let job = Job { context, rule, progress, probe, workspaces: &self.workspaces };
+        let (pass, statistics, apron) = job.first_pass(&rect)?;
+        let refined = if job.rule.never() { Vec::new() } else { job.refine(&pass, &rect)? };
+        let mut frame = Frame::of(pass, rect, statistics, apron);
+        refined.iter().for_each(|(pixels, statistics)| frame.refine(pixels, statistics));
+        Ok(frame)
+    }
 }
 
 /// A render under way.
@@ -125,7 +151,7 @@ struct Job<'a, P> {
     rule: EdgeRule,
     progress: &'a dyn Progress,
     probe: &'a P,
-    workspaces: Workspaces,
+    workspaces: &'a Workspaces,
 }
 
 impl<P: Probe> Job<'_, P> {
@@ -142,7 +168,13 @@ impl<P: Probe> Job<'_, P> {
         let mut pass = FirstPass::new(covered);
         let rows = pass.rows();
         let results = self.for_each(1, &regions, |workspace, region| {
-            workspace.first_samples(&self.context, region, &rows, self.probe)?;
+            let is_inside = rect.contains([region.x, region.y]);
+            workspace.first_samples(&self.context, region, self.probe, |part, samples| {
+                rows.set(part, samples.colors(), samples.first());
+                if is_inside {
+                    self.progress.painted(part, &mut samples.colors());
+                }
+            })?;
             Ok(workspace.take_statistics())
         })?;
         drop(rows);
@@ -160,6 +192,7 @@ impl<P: Probe> Job<'_, P> {
         self.for_each(2, &regions, |workspace, region| {
             let pixels = watched(self.probe, Phase::Refine, || flagged(&self.rule, pass, region));
             let refined = workspace.refine(&self.context, pass, &pixels, self.probe)?;
+            self.progress.refined(&mut refined.iter().map(|&Refined { pixel, color }| (pixel, color)));
             Ok((refined, workspace.take_statistics()))
         })
     }
@@ -175,7 +208,10 @@ impl<P: Probe> Job<'_, P> {
         regions
             .par_iter()
             .map(|region| {
-                let result = self.workspaces.with(|workspace| work(workspace, region))?;
+                let result = self.workspaces.with(|workspace| {
+                    // What was counted for a picture that is not finished must not appear in the next one.
+                    work(workspace, region).inspect_err(|_| _ = workspace.take_statistics())
+                })?;
                 self.progress.regions_done(phase, done.fetch_add(1, Ordering::Relaxed) + 1, regions.len());
                 Ok(result)
             })

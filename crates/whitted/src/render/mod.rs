@@ -39,7 +39,7 @@ pub use aov::{Aov, AovPicture, Clock, Legend, aovs, aovs_classic, heat};
 pub use execution::{Execution, Method, Region};
 pub use explain::{RayEnd, RayKind, RayTree, SampleTree, SurfaceHit, TracedRay, explain};
 pub use first_pass::FirstSample;
-pub use frame::{Classic, Frame, render, render_classic, render_rect};
+pub use frame::{Classic, Frame, Renderer, render, render_classic, render_rect};
 pub use image::Image;
 pub use probe::{Phase, Probe, Unwatched};
 pub use progress::{Cancel, Cancelled, Progress, Silent};

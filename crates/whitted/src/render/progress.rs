@@ -1,11 +1,20 @@
 //! Telling the caller how far the work is, and being told to stop.
 
+use super::region::PixelRect;
+use crate::math::Vec3f;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Receives the picture region by region, from any thread.
 pub trait Progress: Sync {
     /// Phase 1 (all regions once) or 2 (flagged pixels) has finished `done` of `total` regions.
     fn regions_done(&self, phase: u32, done: usize, total: usize);
+
+    /// The first samples of all pixels of `rect` have these linear colours, row by row. Comes before the count of the
+    /// region to which they belong. Pixels around a rectangle that is rendered alone are not told.
+    fn painted(&self, _rect: &PixelRect, _colors: &mut dyn Iterator<Item = Vec3f>) {}
+
+    /// Supersampled pixels have these final linear colours.
+    fn refined(&self, _pixels: &mut dyn Iterator<Item = ([u32; 2], Vec3f)>) {}
 }
 
 /// A sink that ignores everything.

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::execution::Method;
-use super::first_pass::{FirstPass, PassRows};
+use super::first_pass::FirstPass;
 use super::jitter::{Jitter, MIDDLE};
 use super::probe::{Phase, Probe, watched};
 use super::progress::Cancelled;
@@ -79,13 +79,13 @@ impl Workspace {
         std::mem::take(&mut self.samples.statistics)
     }
 
-    /// Take the first sample of every pixel of `region` and write it to `rows`.
+    /// Take the first sample of every pixel of `region` and hand them over, a part of the region at a time.
     pub(super) fn first_samples<P: Probe>(
         &mut self,
         context: &Context,
         region: &PixelRect,
-        rows: &PassRows,
         probe: &P,
+        hand_over: impl Fn(&PixelRect, &Samples),
     ) -> Result<(), Cancelled> {
         for part in region.parts(CHUNK) {
             watched(probe, Phase::Queue, || {
@@ -93,7 +93,7 @@ impl Workspace {
                 part.for_each_in_tiles(|pixel| self.places.push(part.index(pixel) as u32, pixel, MIDDLE));
             });
             self.trace(context, probe)?;
-            watched(probe, Phase::Queue, || rows.set(&part, self.samples.colors(), self.samples.first()));
+            watched(probe, Phase::Queue, || hand_over(&part, &self.samples));
         }
         Ok(())
     }

@@ -46,14 +46,14 @@ impl Camera {
     }
 
     /// Unit vectors to the right, up and forward. The camera has no [`fault`](Self::fault).
-    pub(crate) fn axes(&self) -> [Vec3d; 3] {
+    pub fn axes(&self) -> [Vec3d; 3] {
         let forward = (self.look_at - self.eye).direction();
         let right = forward.cross(self.up.direction()).direction();
         [right, right.cross(forward), forward]
     }
 
     /// Half the height of the picture at distance 1.
-    pub(crate) fn half_height(&self) -> f64 {
+    pub fn half_height(&self) -> f64 {
         let (sin, cos) = sin_cos_degrees(0.5 * self.vfov);
         sin / cos
     }

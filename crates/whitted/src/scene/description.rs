@@ -128,7 +128,7 @@ impl Default for Background {
 }
 
 /// An indexed triangle mesh.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Where it came from, for messages.
     pub name: String,

@@ -36,9 +36,12 @@ pub struct Look {
 }
 
 impl Look {
-    /// The look of a scene that has passed [`check::scene`].
-    pub(super) fn new(scene: &Scene, geometry: &Geometry) -> Result<Self, SceneError> {
-        let primitive_materials = primitive_materials(scene);
+    /// The look of a scene that has passed [`check::scene`], in which the primitives have these materials by number.
+    pub(super) fn new(
+        scene: &Scene,
+        geometry: &Geometry,
+        primitive_materials: Arc<[u32]>,
+    ) -> Result<Self, SceneError> {
         check::material_indices(&primitive_materials, scene.materials.len())?;
         let space = geometry.space();
         let prepare = |material| PreparedMaterial::new(material, space.origin(), space.scale());
@@ -67,7 +70,7 @@ impl Look {
 
     /// The number of the material of each primitive.
     #[inline(always)]
-    pub(crate) fn primitive_materials(&self) -> &[u32] {
+    pub(crate) fn primitive_materials(&self) -> &Arc<[u32]> {
         &self.primitive_materials
     }
 
@@ -138,7 +141,7 @@ fn opaque(primitive_materials: &[u32], materials: &[PreparedMaterial]) -> Option
 }
 
 /// The material of each primitive, in the order of their numbers.
-fn primitive_materials(scene: &Scene) -> Arc<[u32]> {
+pub(super) fn primitive_materials(scene: &Scene) -> Arc<[u32]> {
     let triangles = scene.meshes.iter().flat_map(|mesh| {
         (0..mesh.triangles.len()).map(|i| mesh.triangle_materials.get(i).copied().unwrap_or(mesh.material))
     });

@@ -1,6 +1,6 @@
 //! A scene that has been checked and is ready to be rendered.
 
-use super::check;
+use super::{check, look};
 use super::{Change, Geometry, Look, NamedCamera, Scene, SceneError, difference};
 use crate::tree::BuildOptions;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ impl Prepared {
     pub fn new(scene: &Scene, options: &BuildOptions) -> Result<Self, SceneError> {
         check::scene(scene)?;
         let geometry = Geometry::new(scene, options)?;
-        let look = Look::new(scene, &geometry)?;
+        let look = Look::new(scene, &geometry, look::primitive_materials(scene))?;
         Ok(Self { geometry: Arc::new(geometry), look })
     }
 
@@ -40,17 +40,21 @@ impl Prepared {
     }
 
     /// The same shapes with the materials, lights, first camera, ambient light and background of `scene`, whose shapes
-    /// must be those of the scene from which this one was prepared: nothing is rebuilt.
+    /// must be those of the scene from which this one was prepared, or which has none: nothing is rebuilt.
     ///
     /// # Errors
     /// What [`SceneError`] lists; also if the number of primitives differs.
     pub fn with_look_of(&self, scene: &Scene) -> Result<Self, SceneError> {
         check::scene(scene)?;
         let (expected, found) = (self.geometry.primitives().len(), scene.primitive_count());
-        if expected != found {
+        if found != 0 && expected != found {
             return Err(SceneError::OtherShapes { expected, found });
         }
-        let look = Look::new(scene, &self.geometry)?;
+        let owners = match found {
+            0 => Arc::clone(self.look.primitive_materials()),
+            _ => look::primitive_materials(scene),
+        };
+        let look = Look::new(scene, &self.geometry, owners)?;
         Ok(Self { geometry: Arc::clone(&self.geometry), look })
     }
 

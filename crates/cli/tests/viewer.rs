@@ -1,0 +1,161 @@
+//! The viewer as a person meets it: a real window on a display without a screen, real mouse and keys; and scripts.
+//!
+//! Needs Xvfb, xdotool and import (ImageMagick). Without them the tests of the window say loudly that they were skipped;
+//! with `WHITTED_REQUIRE_DISPLAY` set, as in CI, that is a failure.
+
+#![cfg(feature = "viewer")]
+
+mod window;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use window::{Desk, Viewer, wait_for};
+
+const SIZE: &str = "320x240";
+
+/// A scene whose ball has this colour, seen by this camera.
+fn scene(color: &str, camera: &str) -> String {
+    format!(
+        "version = 1\n{camera}\n[render]\nbackground = \"#203040\"\n[[light]]\npoint = [4, 6, 5]\n\
+         [material.ball]\ncolor = \"{color}\"\nreflect = 0.3\n[material.floor]\ncolor = {{ checker = [\"#e8e2d6\", \
+         \"#8c2f2b\"], size = 1 }}\n[[plane]]\npoint = [0, 0, 0]\nmaterial = \"floor\"\n[[sphere]]\ncenter = [0, 1, 0]\n\
+         radius = 1\nmaterial = \"ball\"\n"
+    )
+}
+
+const CAMERA: &str = "[camera]\neye = [0, 1.5, 6]\nlook_at = [0, 1, 0]";
+
+/// A folder of its own for a test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn whitted() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_whitted"))
+}
+
+/// The pixels that `whitted render` gives for a scene.
+fn rendered(folder: &Path, scene: &str) -> Vec<u8> {
+    let (file, picture) = (folder.join("expected.toml"), folder.join("expected.png"));
+    fs::write(&file, scene).unwrap();
+    let status = whitted().args(["render", "-q", "--size", SIZE, "-o"]).args([&picture, &file]).status();
+    assert!(status.unwrap().success());
+    window::pixels(&fs::read(picture).unwrap())
+}
+
+#[test]
+fn a_person_looks_around_edits_and_closes() {
+    let folder = folder("window");
+    let Some(desk) = Desk::start() else { return };
+    let file = folder.join("scene.toml");
+    let first = scene("#c04020", CAMERA);
+    fs::write(&file, &first).unwrap();
+    let mut viewer = Viewer::open(&desk, &folder, &["--size", SIZE], &file);
+
+    // The finished picture is that of a render, to the byte.
+    viewer.key("o");
+    let expected = rendered(&folder, &first);
+    viewer.wait_for_picture("the first picture", |picture| picture == expected);
+    let busy = viewer.cpu_share();
+    assert!(busy < 0.05, "{busy} of a core is busy at rest");
+
+    // Orbit; the camera that is printed gives the picture that is shown.
+    viewer.drag(1, [160, 120], [90, 100]);
+    viewer.wait_for_picture("another picture", |picture| picture != expected);
+    viewer.wait_until_at_rest();
+    viewer.key("p");
+    let block = viewer.printed_block("[camera]");
+    let turned = rendered(&folder, &scene("#c04020", &block));
+    viewer.wait_for_picture("the picture of the camera that was printed", |picture| picture == turned);
+
+    // An edit is followed, the camera stays.
+    fs::write(&file, scene("#2040c0", CAMERA)).unwrap();
+    let blue = rendered(&folder, &scene("#2040c0", &block));
+    viewer.wait_for_picture("the edited material", |picture| picture == blue);
+
+    // A broken edit is told over the last good picture; mended, all is well again.
+    fs::write(&file, scene("#2040c0", CAMERA).replace("radius", "radios")).unwrap();
+    viewer.wait_for_picture("the card about what is wrong", |picture| picture != blue);
+    fs::write(&file, scene("#2040c0", CAMERA)).unwrap();
+    viewer.wait_for_picture("the mended scene", |picture| picture == blue);
+
+    // Save, reset, pick, fly, resize.
+    viewer.key("F12");
+    let saved = folder.join("scene.png");
+    wait_for("the saved picture", || saved.exists());
+    assert!(window::pixels(&fs::read(saved).unwrap()) == blue);
+    viewer.key("Return");
+    let home = rendered(&folder, &scene("#2040c0", CAMERA));
+    viewer.wait_for_picture("the scene's own camera", |picture| picture == home);
+    viewer.click(2, [150, 120]);
+    viewer.wait_for_picture("the picked point in the middle", |picture| picture != home);
+    viewer.resize([200, 150]);
+    viewer.hold("w", 0.2);
+    viewer.wait_until_at_rest();
+
+    // Views and panels come and go.
+    viewer.key("o");
+    viewer.key("Tab");
+    viewer.key("h");
+    viewer.wait_until_at_rest();
+    viewer.key("Escape");
+    viewer.key("Escape");
+    assert_eq!(viewer.exit_code(), 0);
+}
+
+#[test]
+fn the_window_can_be_closed_while_it_is_busy() {
+    let folder = folder("closing");
+    let Some(desk) = Desk::start() else { return };
+    let file = folder.join("many.toml");
+    let many = "[[generate]]\nkind = \"sphere-cube\"\ncount = 300000\nseed = 1\nmaterial = \"ball\"\n";
+    fs::write(&file, scene("#c04020", CAMERA) + many).unwrap();
+    let mut viewer = Viewer::open(&desk, &folder, &["--size", SIZE], &file);
+    viewer.close();
+    assert_eq!(viewer.exit_code(), 0);
+}
+
+#[test]
+fn without_a_display_it_says_so() {
+    let folder = folder("no-display");
+    let file = folder.join("scene.toml");
+    fs::write(&file, scene("#c04020", CAMERA)).unwrap();
+    let output = whitted().arg("view").arg(&file).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("no window can be opened") && text.contains("whitted render"), "{text}");
+}
+
+#[test]
+fn a_script_needs_no_display() {
+    let folder = folder("script");
+    let text = scene("#c04020", CAMERA);
+    fs::write(folder.join("scene.toml"), &text).unwrap();
+    let script = "wait refined\nsave first.png\norbit 160 120 90 100\nwait refined\nkey p\nkey h\n\
+                  screenshot help.png\nkey escape\nreport\nquit\nsave never.png\n";
+    fs::write(folder.join("look.txt"), script).unwrap();
+    let arguments = ["view", "scene.toml", "--size", SIZE, "--script", "look.txt"];
+    let output = whitted().args(arguments).current_dir(&folder).env_remove("DISPLAY").output().unwrap();
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(printed.starts_with("[camera]\neye = [") && printed.contains(" fps, "), "{printed}");
+    let first = window::pixels(&fs::read(folder.join("first.png")).unwrap());
+    assert!(first == rendered(&folder, &text));
+    assert!(window::pixels(&fs::read(folder.join("help.png")).unwrap()) != first);
+    assert!(!folder.join("never.png").exists(), "a script ends with 'quit'");
+}
+
+#[test]
+fn wrong_scripts_are_told_with_their_line() {
+    let folder = folder("wrong-script");
+    fs::write(folder.join("scene.toml"), scene("#c04020", CAMERA)).unwrap();
+    fs::write(folder.join("look.txt"), "wait refined\nfly north\n").unwrap();
+    let output = whitted().args(["view", "scene.toml", "--script", "look.txt"]).current_dir(&folder).output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(text.contains("look.txt: line 2: there is no step 'fly'"), "{text}");
+}

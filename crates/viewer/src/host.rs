@@ -1,0 +1,36 @@
+//! What the viewer asks of whoever opens it: files and their formats are not its own.
+
+use std::path::{Path, PathBuf};
+use whitted::scene::{NamedCamera, Scene};
+
+/// A scene and the files that it came from.
+#[derive(Clone, Debug, Default)]
+pub struct Opened {
+    /// The scene.
+    pub scene: Scene,
+    /// All files that were read: whoever changes one of them changes the scene.
+    pub files: Vec<PathBuf>,
+    /// What was odd, a line or more for each.
+    pub warnings: Vec<String>,
+}
+
+/// Opens and saves for the viewer. Called from threads of the viewer's, never from the one that serves the window.
+pub trait Host: Send + Sync + 'static {
+    /// The file of the scene, for the title and as the first to watch.
+    fn path(&self) -> &Path;
+
+    /// Read the scene as it is now.
+    ///
+    /// # Errors
+    /// What is wrong and where, in lines that a person can read: they are shown in the window.
+    fn open(&self) -> Result<Opened, String>;
+
+    /// Write a picture, RGB row by row. The file must be whole or not there, whatever happens meanwhile.
+    ///
+    /// # Errors
+    /// Why it could not be written.
+    fn save(&self, path: &Path, size: [u32; 2], rgb8: &[u8]) -> Result<(), String>;
+
+    /// The camera as it is written in a scene file.
+    fn camera_block(&self, camera: &NamedCamera) -> String;
+}

@@ -1,0 +1,246 @@
+//! The thread that reads the scene, builds its tree, and watches its files.
+
+use crate::host::{Host, Opened};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant, SystemTime};
+use whitted::math::Vec3d;
+use whitted::scene::{Prepared, Scene};
+use whitted::tree::BuildOptions;
+
+/// How often the files are looked at. Asking the system for the time stamp of a file takes some microseconds, so this
+/// costs a thousandth of a core, works on every file system and needs no dependency.
+const POLL: Duration = Duration::from_millis(30);
+
+/// A broken scene is shown as such only if its files stay as they are for so long: editors that write a file in
+/// several steps leave it empty for a moment.
+const SETTLED: Duration = Duration::from_millis(60);
+
+/// A scene that is ready to be shown.
+#[derive(Clone, Debug)]
+pub(crate) struct Ready {
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) prepared: Arc<Prepared>,
+    /// The corners of a box around everything bounded.
+    pub(crate) bounds: Option<[Vec3d; 2]>,
+    pub(crate) warnings: Vec<String>,
+    /// How long reading and building took. The latter is zero if nothing had to be built.
+    pub(crate) read_time: Duration,
+    pub(crate) build_time: Duration,
+}
+
+/// What the opener is doing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Activity {
+    /// It waits for files to change.
+    #[default]
+    Idle,
+    /// It reads files, since then.
+    Reading(Instant),
+    /// It builds the tree over so many primitives, since then.
+    Building(usize, Instant),
+}
+
+/// What the opener tells.
+#[derive(Debug)]
+pub(crate) enum News {
+    /// The files were read; the picture shall have this size.
+    Read([u32; 2]),
+    /// The scene is new or has changed.
+    Ready(Box<Ready>),
+    /// It cannot be read.
+    Broken(String),
+}
+
+/// The opening thread, from outside. It ends by itself when this is dropped, at the latest when it has built its tree.
+pub(crate) struct Opener {
+    orders: Sender<()>,
+    news: Receiver<News>,
+    activity: Arc<Mutex<Activity>>,
+    closing: Arc<AtomicBool>,
+}
+
+impl Opener {
+    /// Start to open the scene; `wake` is called when there are news.
+    ///
+    /// # Errors
+    /// If the system has no thread left.
+    pub(crate) fn start(
+        host: Arc<dyn Host>,
+        options: BuildOptions,
+        threads: usize,
+        wake: Arc<dyn Fn() + Send + Sync>,
+    ) -> std::io::Result<Self> {
+        let (orders, inbox) = channel();
+        let (outbox, news) = channel();
+        let activity = Arc::<Mutex<Activity>>::default();
+        let closing = Arc::new(AtomicBool::new(false));
+        let mut work = Work {
+            options,
+            threads,
+            inbox,
+            outbox,
+            wake,
+            activity: Arc::clone(&activity),
+            closing: Arc::clone(&closing),
+            watched: vec![Watched::new(host.path().to_owned())],
+            current: None,
+            host,
+        };
+        std::thread::Builder::new().name("opener".to_owned()).spawn(move || work.run())?;
+        Ok(Self { orders, news, activity, closing })
+    }
+
+    /// Read the scene again, even if its files have not changed.
+    pub(crate) fn reload(&self) {
+        // If the thread has gone, nothing can be read any more.
+        let _ = self.orders.send(());
+    }
+
+    /// What happened since this was last asked.
+    pub(crate) fn news(&self) -> Option<News> {
+        self.news.try_recv().ok()
+    }
+
+    /// What it is doing.
+    pub(crate) fn activity(&self) -> Activity {
+        self.activity.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl Drop for Opener {
+    fn drop(&mut self) {
+        self.closing.store(true, Ordering::Relaxed);
+    }
+}
+
+/// A file and how it was when it was last read.
+#[derive(Debug)]
+struct Watched {
+    path: PathBuf,
+    stamp: Option<(SystemTime, u64)>,
+}
+
+impl Watched {
+    fn new(path: PathBuf) -> Self {
+        Self { stamp: stamp(&path), path }
+    }
+
+    /// True if it is another file now than when this was last asked.
+    fn changed(&mut self) -> bool {
+        let now = stamp(&self.path);
+        std::mem::replace(&mut self.stamp, now) != now
+    }
+}
+
+/// Time and length of a file; `None` if it is not there.
+fn stamp(path: &Path) -> Option<(SystemTime, u64)> {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some((metadata.modified().ok()?, metadata.len()))
+}
+
+/// What the opening thread owns.
+struct Work {
+    host: Arc<dyn Host>,
+    options: BuildOptions,
+    threads: usize,
+    inbox: Receiver<()>,
+    outbox: Sender<News>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+    activity: Arc<Mutex<Activity>>,
+    closing: Arc<AtomicBool>,
+    watched: Vec<Watched>,
+    /// What was told last.
+    current: Option<Ready>,
+}
+
+impl Work {
+    fn run(&mut self) {
+        let mut is_due = true;
+        let mut trouble: Option<(Instant, String)> = None;
+        while !self.closing.load(Ordering::Relaxed) {
+            if is_due {
+                trouble = self.open().err().map(|text| (Instant::now(), text));
+            }
+            if let Some((_, text)) = trouble.take_if(|(since, _)| since.elapsed() >= SETTLED) {
+                self.tell(News::Broken(text));
+            }
+            let ordered = match self.inbox.recv_timeout(POLL) {
+                Ok(()) => true,
+                Err(RecvTimeoutError::Timeout) => false,
+                Err(RecvTimeoutError::Disconnected) => return,
+            };
+            // All of them are asked, so that each remembers how it is.
+            let changed = self.watched.iter_mut().fold(false, |any, file| file.changed() | any);
+            is_due = ordered || changed;
+        }
+    }
+
+    fn tell(&self, news: News) {
+        // If nobody listens any more, the viewer is about to close.
+        let _ = self.outbox.send(news);
+        (self.wake)();
+    }
+
+    fn set(&self, activity: Activity) {
+        *self.activity.lock().unwrap_or_else(PoisonError::into_inner) = activity;
+        (self.wake)();
+    }
+
+    /// Read the scene and make it ready.
+    fn open(&mut self) -> Result<(), String> {
+        let start = Instant::now();
+        self.set(Activity::Reading(start));
+        let result = self.host.open().and_then(|opened| self.prepare(opened, start.elapsed()));
+        // Before it is idle: whoever sees it idle has heard of what it did.
+        let told = result.map(|ready| self.tell(News::Ready(Box::new(ready))));
+        self.set(Activity::Idle);
+        told
+    }
+
+    fn prepare(&mut self, opened: Opened, read_time: Duration) -> Result<Ready, String> {
+        let Opened { scene, files, warnings } = opened;
+        self.watch(files);
+        self.tell(News::Read(scene.settings.size));
+        let start = Instant::now();
+        let same = self.current.as_ref().filter(|ready| has_same_shapes(&ready.scene, &scene));
+        let prepared = match same {
+            Some(ready) => ready.prepared.with_look_of(&scene),
+            None => self.build(&scene),
+        };
+        let prepared = Arc::new(prepared.map_err(|error| format!("{}: {error}", self.host.path().display()))?);
+        let (bounds, build_time) = match same {
+            Some(ready) => (ready.bounds, Duration::ZERO),
+            None => (scene.bounds().map(|(lo, hi)| [lo, hi]), start.elapsed()),
+        };
+        let ready = Ready { scene: Arc::new(scene), prepared, bounds, warnings, read_time, build_time };
+        self.current = Some(ready.clone());
+        Ok(ready)
+    }
+
+    fn build(&self, scene: &Scene) -> Result<Prepared, whitted::scene::SceneError> {
+        self.set(Activity::Building(scene.primitive_count(), Instant::now()));
+        // A pool of its own: the picture of before must be able to move meanwhile.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build();
+        let options = &self.options;
+        let build = || Prepared::new(scene, options);
+        pool.map_or_else(|_| build(), |pool| pool.install(build))
+    }
+
+    /// Watch these files from now on; those that were watched before keep their stamps.
+    fn watch(&mut self, files: Vec<PathBuf>) {
+        self.watched.retain(|watched| files.contains(&watched.path));
+        for path in files {
+            if !self.watched.iter().any(|watched| watched.path == path) {
+                self.watched.push(Watched::new(path));
+            }
+        }
+    }
+}
+
+/// True if a tree over one is a tree over the other.
+fn has_same_shapes(a: &Scene, b: &Scene) -> bool {
+    a.spheres == b.spheres && a.shapes == b.shapes && a.planes == b.planes && a.meshes == b.meshes
+}

@@ -1,0 +1,327 @@
+//! The panel: settings, cameras, materials and lights, live; and what the scene and its picture are made of.
+
+use super::cards::grouped;
+use super::status::short;
+use super::theme::{ACCENT, FAINT, card};
+use crate::action::{Action, Side};
+use crate::session::Session;
+use egui::{
+    Align2, CollapsingHeader, ComboBox, Context, DragValue, Grid, RichText, ScrollArea, Slider, Ui, Window, vec2,
+};
+use whitted::math::{Vec3d, Vec3f};
+use whitted::scene::{Antialias, Background, Light, LightKind, Settings, Shadows, Tone};
+use whitted::shading::{Material, Reflectance, SpecularModel, Texture};
+
+/// Width of the panel in units of layout.
+const WIDTH: f32 = 290.0;
+
+/// The deepest recursion and the most samples that sliders offer; numbers can be typed beyond.
+const DEEPEST: u32 = 20;
+const MOST_SAMPLES: u32 = 64;
+
+/// What is chosen in the panel.
+#[derive(Debug, Default)]
+pub(super) struct Panel {
+    material: usize,
+}
+
+impl Panel {
+    pub(super) fn show(&mut self, context: &Context, session: &mut Session) {
+        let height = (context.content_rect().height() - 24.0).max(60.0);
+        let window = Window::new("panel").title_bar(false).resizable(false).movable(false).frame(card());
+        window.anchor(Align2::RIGHT_TOP, vec2(-10.0, 10.0)).fixed_size(vec2(WIDTH, height)).show(context, |ui| {
+            ScrollArea::vertical().max_height(height - 30.0).show(ui, |ui| {
+                ui.set_width(WIDTH);
+                ui.label(RichText::new(session.title()).heading());
+                section(ui, "Picture", true, |ui| picture(ui, session));
+                section(ui, "Cameras", true, |ui| cameras(ui, session));
+                section(ui, "Materials", false, |ui| self.materials(ui, session));
+                section(ui, "Lights", false, |ui| lights(ui, session));
+                section(ui, "Statistics", true, |ui| statistics(ui, session));
+            });
+        });
+    }
+
+    fn materials(&mut self, ui: &mut Ui, session: &mut Session) {
+        let Some(mut look) = session.look().cloned() else { return };
+        self.material = self.material.min(look.materials.len().saturating_sub(1));
+        let Some(chosen) = look.materials.get(self.material) else { return };
+        ComboBox::from_id_salt("material").selected_text(&chosen.name).width(WIDTH - 20.0).show_ui(ui, |ui| {
+            for (index, named) in look.materials.iter().enumerate() {
+                ui.selectable_value(&mut self.material, index, &named.name);
+            }
+        });
+        let Some(named) = look.materials.get_mut(self.material) else { return };
+        let before = named.material.clone();
+        grid(ui, "material", |ui| material(ui, &mut named.material));
+        if named.material != before && named.material.fault().is_none() {
+            session.set_look(look);
+        }
+    }
+}
+
+fn section(ui: &mut Ui, title: &str, open: bool, show: impl FnOnce(&mut Ui)) {
+    CollapsingHeader::new(RichText::new(title).color(ACCENT)).default_open(open).show_unindented(ui, show);
+    ui.add_space(2.0);
+}
+
+fn grid(ui: &mut Ui, id: &str, show: impl FnOnce(&mut Ui)) {
+    Grid::new(id).num_columns(2).spacing([12.0, 5.0]).show(ui, show);
+}
+
+/// A row of a grid: a name and what can be changed.
+fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
+    ui.label(RichText::new(name).color(FAINT));
+    ui.horizontal(show);
+    ui.end_row();
+}
+
+fn picture(ui: &mut Ui, session: &mut Session) {
+    let mut settings = session.settings().clone();
+    grid(ui, "picture", |ui| picture_rows(ui, &mut settings));
+    if settings != *session.settings() {
+        session.set_settings(settings);
+    }
+    ui.horizontal(|ui| {
+        if ui.button("save picture").clicked() {
+            session.act(Action::Save);
+        }
+        let record = if session.is_recording() { "stop and render" } else { "record a way" };
+        if ui.button(record).clicked() {
+            session.act(Action::Record);
+        }
+    });
+}
+
+fn picture_rows(ui: &mut Ui, settings: &mut Settings) {
+    row(ui, "depth", |ui| {
+        ui.add(Slider::new(&mut settings.depth, 0..=DEEPEST).clamping(egui::SliderClamping::Never));
+    });
+    row(ui, "least weight", |ui| {
+        ui.add(DragValue::new(&mut settings.min_weight).speed(0.0005).range(0.0..=1.0).max_decimals(4));
+    });
+    row(ui, "antialiasing", |ui| antialias(ui, settings));
+    row(ui, "exposure", |ui| {
+        ui.add(Slider::new(&mut settings.exposure, -5.0..=5.0).max_decimals(2));
+    });
+    row(ui, "tone", |ui| {
+        choice(
+            ui,
+            &mut settings.tone,
+            &[(Tone::Clamp, "clamp"), (Tone::Reinhard, "Reinhard"), (Tone::Linear, "linear")],
+        );
+    });
+    row(ui, "glass shadows", |ui| {
+        choice(ui, &mut settings.shadows, &[(Shadows::Filter, "coloured"), (Shadows::Opaque, "black")]);
+    });
+}
+
+fn antialias(ui: &mut Ui, settings: &mut Settings) {
+    let uniform = match settings.antialias {
+        Antialias::Uniform(samples) => samples,
+        _ => settings.antialias_max,
+    };
+    let modes = [
+        (Antialias::Off, "off"),
+        (Antialias::Paper, "paper"),
+        (Antialias::Edge, "edges"),
+        (Antialias::Uniform(uniform), "all pixels"),
+    ];
+    choice(ui, &mut settings.antialias, &modes);
+    let samples = match &mut settings.antialias {
+        Antialias::Off => return,
+        Antialias::Uniform(samples) => samples,
+        Antialias::Paper | Antialias::Edge => &mut settings.antialias_max,
+    };
+    ui.add(DragValue::new(samples).range(1..=MOST_SAMPLES).speed(0.1).suffix("×"));
+}
+
+/// One of a few values.
+fn choice<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, all: &[(T, &str)]) {
+    let name = all.iter().find(|(known, _)| known == value).map_or("", |(_, name)| name);
+    ComboBox::from_id_salt(ui.next_auto_id()).selected_text(name).width(96.0).show_ui(ui, |ui| {
+        for (known, name) in all {
+            ui.selectable_value(value, *known, *name);
+        }
+    });
+}
+
+fn cameras(ui: &mut Ui, session: &mut Session) {
+    let names: Vec<String> =
+        session.scene().map_or_else(Vec::new, |scene| scene.cameras.iter().map(|named| named.name.clone()).collect());
+    ui.horizontal_wrapped(|ui| {
+        for (index, name) in names.iter().enumerate() {
+            if ui.button(name).clicked() {
+                session.go_to_camera(index);
+            }
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        for (name, action) in [
+            ("front", Action::Side(Side::Front)),
+            ("right", Action::Side(Side::Right)),
+            ("top", Action::Side(Side::Top)),
+            ("frame all", Action::FrameAll),
+            ("turntable", Action::Turntable),
+        ] {
+            if ui.small_button(name).clicked() {
+                session.act(action);
+            }
+        }
+    });
+    let camera = *session.camera();
+    let shown = |v: Vec3d| format!("{:.3}  {:.3}  {:.3}", v.x, v.y, v.z);
+    grid(ui, "camera", |ui| {
+        row(ui, "eye", |ui| _ = ui.monospace(shown(camera.eye)));
+        row(ui, "looks at", |ui| _ = ui.monospace(shown(camera.look_at)));
+    });
+}
+
+fn material(ui: &mut Ui, material: &mut Material) {
+    match &mut material.color {
+        Texture::Color(color) => row(ui, "colour", |ui| colour(ui, color)),
+        Texture::Checker { even, odd, size } => row(ui, "colours", |ui| {
+            colour(ui, even);
+            colour(ui, odd);
+            ui.add(DragValue::new(size).speed(0.01).range(1e-6..=f32::MAX));
+        }),
+    }
+    row(ui, "ambient", |ui| strength(ui, &mut material.ambient));
+    row(ui, "diffuse", |ui| strength(ui, &mut material.diffuse));
+    row(ui, "highlight", |ui| amount(ui, &mut material.specular));
+    row(ui, "exponent", |ui| {
+        ui.add(Slider::new(&mut material.exponent, 0.0..=2000.0).logarithmic(true).max_decimals(1));
+    });
+    row(ui, "", |ui| {
+        choice(ui, &mut material.specular_model, &[(SpecularModel::Phong, "Phong"), (SpecularModel::Blinn, "Blinn")]);
+    });
+    row(ui, "reflects", |ui| amount(ui, &mut material.reflect));
+    row(ui, "transmits", |ui| amount(ui, &mut material.transmit));
+    row(ui, "by angle", |ui| {
+        let all =
+            [(Reflectance::Constant, "constant"), (Reflectance::Fresnel, "Fresnel"), (Reflectance::Schlick, "Schlick")];
+        choice(ui, &mut material.reflectance, &all);
+    });
+    row(ui, "refraction", |ui| {
+        ui.add(DragValue::new(&mut material.ior).speed(0.002).range(0.01..=10.0).max_decimals(4));
+    });
+    row(ui, "absorbs", |ui| {
+        for component in [&mut material.absorb.x, &mut material.absorb.y, &mut material.absorb.z] {
+            ui.add(DragValue::new(component).speed(0.005).range(0.0..=f32::MAX).max_decimals(3));
+        }
+    });
+}
+
+fn strength(ui: &mut Ui, value: &mut f32) {
+    ui.add(Slider::new(value, 0.0..=1.0).clamping(egui::SliderClamping::Never).max_decimals(3));
+}
+
+/// A strength for each component: a slider for all together, and a colour.
+fn amount(ui: &mut Ui, value: &mut Vec3f) {
+    let mut largest = value.max_component();
+    let before = largest;
+    strength(ui, &mut largest);
+    if largest != before {
+        *value = if before > 0.0 { *value * (largest / before) } else { Vec3f::splat(largest) };
+    }
+    colour(ui, value);
+}
+
+/// A linear colour; brighter than white it keeps its brightness.
+fn colour(ui: &mut Ui, color: &mut Vec3f) {
+    let scale = color.max_component().max(1.0);
+    let mut rgb = color.to_array().map(|component| component / scale);
+    if ui.color_edit_button_rgb(&mut rgb).changed() {
+        *color = Vec3f::from(rgb) * scale;
+    }
+}
+
+fn lights(ui: &mut Ui, session: &mut Session) {
+    let Some(mut look) = session.look().cloned() else { return };
+    let before = (look.lights.clone(), look.ambient, look.background);
+    for (number, light) in (1..).zip(&mut look.lights) {
+        grid(ui, &format!("light {number}"), |ui| light_rows(ui, number, light));
+        ui.separator();
+    }
+    grid(ui, "surroundings", |ui| {
+        row(ui, "ambient", |ui| colour(ui, &mut look.ambient));
+        row(ui, "background", |ui| match &mut look.background {
+            Background::Color(color) => colour(ui, color),
+            Background::Gradient { down, up } => {
+                colour(ui, up);
+                colour(ui, down);
+            }
+        });
+    });
+    if (&look.lights, look.ambient, look.background) != (&before.0, before.1, before.2) {
+        session.set_look(look);
+    }
+}
+
+fn light_rows(ui: &mut Ui, number: usize, light: &mut Light) {
+    let (kind, place) = match &mut light.kind {
+        LightKind::Point { position } => ("point", position),
+        LightKind::Directional { direction } => ("sun", direction),
+        LightKind::Spot { position, .. } => ("spot", position),
+    };
+    row(ui, &format!("{number}: {kind}"), |ui| {
+        for component in [&mut place.x, &mut place.y, &mut place.z] {
+            ui.add(DragValue::new(component).speed(0.02).max_decimals(3));
+        }
+    });
+    row(ui, "light", |ui| {
+        let mut brightness = light.color.max_component();
+        let before = brightness;
+        ui.add(DragValue::new(&mut brightness).speed(0.01).range(0.0..=f32::MAX).max_decimals(3));
+        if brightness != before {
+            light.color = if before > 0.0 { light.color * (brightness / before) } else { Vec3f::splat(brightness) };
+        }
+        colour(ui, &mut light.color);
+        ui.checkbox(&mut light.inverse_square, "falls off");
+    });
+}
+
+fn statistics(ui: &mut Ui, session: &Session) {
+    let Some(scene) = session.scene() else { return };
+    let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    let tree = session.prepared().map(|prepared| prepared.geometry().tree().report());
+    let finished = session.picture().finished.clone();
+    grid(ui, "statistics", |ui| {
+        let mut number = |name: &str, value: usize| {
+            if value > 0 {
+                row(ui, name, |ui| _ = ui.monospace(grouped(value)));
+            }
+        };
+        number("triangles", triangles);
+        number("spheres", scene.spheres.len());
+        number("other shapes", scene.shapes.len() + scene.planes.len());
+        number("lights", scene.lights.len());
+        if let Some(tree) = tree {
+            number("tree nodes", tree.nodes);
+        }
+        if let Some([read, build]) = session.opening_times() {
+            let text = format!("{:.2} s, {:.2} s", read.as_secs_f64(), build.as_secs_f64());
+            row(ui, "read, built", |ui| _ = ui.monospace(text));
+        }
+        let Some(finished) = finished else { return };
+        let (statistics, seconds) = (finished.frame.statistics, finished.time.as_secs_f64());
+        for (name, count) in [
+            ("camera rays", statistics.camera_rays),
+            ("shadow rays", statistics.shadow_rays),
+            ("reflected", statistics.reflected_rays),
+            ("refracted", statistics.refracted_rays),
+            ("supersampled", statistics.supersampled_pixels),
+            ("cut by weight", statistics.cut_by_weight),
+            ("cut by depth", statistics.cut_by_depth),
+        ] {
+            row(ui, name, |ui| _ = ui.monospace(short(count as f64)));
+        }
+        let per_ray = |count: u64| count as f64 / statistics.rays().max(1) as f64;
+        row(ui, "nodes, tests", |ui| {
+            let text =
+                format!("{:.1}, {:.1} a ray", per_ray(statistics.node_steps), per_ray(statistics.primitive_tests));
+            ui.monospace(text);
+        });
+        row(ui, "rays", |ui| _ = ui.monospace(format!("{}/s", short(statistics.rays() as f64 / seconds.max(1e-9)))));
+    });
+}

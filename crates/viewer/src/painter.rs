@@ -1,0 +1,326 @@
+//! The thread that paints: drafts while things move, then the whole picture, region by region.
+
+use crate::enlarge::{enlarge, pack};
+use crate::quality::{Draft, Quality};
+use crate::screen::{Finished, Screen, Stage};
+use rayon::ThreadPool;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use whitted::math::Vec3f;
+use whitted::render::{Cancel, Execution, Frame, Image, PixelRect, Progress, Region, Renderer, Unwatched};
+use whitted::scene::{Antialias, Camera, Prepared, Settings};
+
+/// Regions for each thread, at least: else some would wait for others.
+const REGIONS_PER_THREAD: u32 = 4;
+
+/// Sides of the regions of drafts in pixels, from which the largest that gives enough regions is taken.
+const REGION_SIDES: [u32; 3] = [64, 32, 16];
+
+/// What the window shall show.
+#[derive(Clone, Debug)]
+pub(crate) struct Wanted {
+    pub(crate) scene: Arc<Prepared>,
+    pub(crate) camera: Camera,
+    /// Of the finished picture; its size is that of the window.
+    pub(crate) settings: Settings,
+    /// Things move: there is no use in refining.
+    pub(crate) moving: bool,
+}
+
+impl Wanted {
+    /// Whether both give the same picture.
+    pub(crate) fn looks_like(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene) && self.camera == other.camera && self.settings == other.settings
+    }
+}
+
+/// The painting thread, from outside.
+pub(crate) struct Painter {
+    desk: Arc<Desk>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Where orders are left and picked up.
+#[derive(Default)]
+struct Desk {
+    order: Mutex<Order>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct Order {
+    wanted: Option<Arc<Wanted>>,
+    /// Stops what is being refined.
+    refining: Option<Arc<Cancel>>,
+    closing: bool,
+}
+
+impl Painter {
+    /// Start the thread; it paints on `screen` with the threads of `pool`, so many pictures a second while things move.
+    ///
+    /// # Errors
+    /// If the system has no thread left.
+    pub(crate) fn start(
+        screen: Arc<Screen>,
+        pool: Arc<ThreadPool>,
+        execution: Execution,
+        fps: f64,
+    ) -> std::io::Result<Self> {
+        let desk = Arc::<Desk>::default();
+        let mut work = Work {
+            desk: Arc::clone(&desk),
+            screen,
+            quality: Quality::new(fps, pool.current_num_threads()),
+            pool,
+            execution,
+            renderer: Renderer::default(),
+            scene: None,
+        };
+        let thread = std::thread::Builder::new().name("painter".to_owned()).spawn(move || work.run())?;
+        Ok(Self { desk, thread: Some(thread) })
+    }
+
+    /// Let this be painted, instead of what was wanted before.
+    pub(crate) fn want(&self, wanted: Wanted) {
+        let mut order = self.desk.lock();
+        if let Some(cancel) = &order.refining {
+            cancel.cancel();
+        }
+        order.wanted = Some(Arc::new(wanted));
+        self.desk.changed.notify_one();
+    }
+}
+
+impl Drop for Painter {
+    fn drop(&mut self) {
+        let mut order = self.desk.lock();
+        order.closing = true;
+        if let Some(cancel) = &order.refining {
+            cancel.cancel();
+        }
+        self.desk.changed.notify_one();
+        drop(order);
+        if let Some(thread) = self.thread.take() {
+            // If it panicked, it has said so already.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Desk {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Order> {
+        // Orders are replaced whole: a panic elsewhere leaves none half written.
+        self.order.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Wait for an order other than `done`. `None`: the viewer is closed.
+    fn next(&self, done: Option<&Arc<Wanted>>) -> Option<Arc<Wanted>> {
+        let mut order = self.lock();
+        loop {
+            if order.closing {
+                return None;
+            }
+            match &order.wanted {
+                Some(wanted) if done.is_none_or(|done| !Arc::ptr_eq(done, wanted)) => return Some(Arc::clone(wanted)),
+                _ => order = self.changed.wait(order).unwrap_or_else(PoisonError::into_inner),
+            }
+        }
+    }
+
+    /// Begin to refine `wanted`, unless something else is wanted by now.
+    fn begin_refining(&self, wanted: &Arc<Wanted>) -> Option<Arc<Cancel>> {
+        let mut order = self.lock();
+        let is_current = order.wanted.as_ref().is_some_and(|current| Arc::ptr_eq(current, wanted));
+        if order.closing || !is_current {
+            return None;
+        }
+        let cancel = Arc::new(Cancel::new());
+        order.refining = Some(Arc::clone(&cancel));
+        Some(cancel)
+    }
+}
+
+/// What the painting thread owns.
+struct Work {
+    desk: Arc<Desk>,
+    screen: Arc<Screen>,
+    pool: Arc<ThreadPool>,
+    execution: Execution,
+    quality: Quality,
+    renderer: Renderer,
+    /// The scene that was painted last with the camera of the moment, and the one that it was made from.
+    scene: Option<(Arc<Prepared>, Prepared)>,
+}
+
+impl Work {
+    fn run(&mut self) {
+        let mut drafted: Option<Arc<Wanted>> = None;
+        let mut done = None;
+        while let Some(wanted) = self.desk.next(done.as_ref()) {
+            done = Some(Arc::clone(&wanted));
+            let Some(prepared) = self.prepared(&wanted) else { continue };
+            if drafted.as_ref().is_none_or(|before| !before.looks_like(&wanted)) {
+                self.draft(&wanted, &prepared);
+                drafted = Some(Arc::clone(&wanted));
+            }
+            if !wanted.moving
+                && let Some(cancel) = self.desk.begin_refining(&wanted)
+            {
+                self.refine(&wanted, &prepared, &cancel);
+            }
+            self.scene = Some((Arc::clone(&wanted.scene), prepared));
+        }
+    }
+
+    /// The scene with the camera that is wanted; `None` if the camera is impossible.
+    fn prepared(&mut self, wanted: &Wanted) -> Option<Prepared> {
+        let mut prepared = match self.scene.take() {
+            Some((source, prepared)) if Arc::ptr_eq(&source, &wanted.scene) => prepared,
+            before => {
+                let geometry = before.map(|(source, _)| source);
+                if geometry.is_none_or(|before| !std::ptr::eq(before.geometry(), wanted.scene.geometry())) {
+                    self.quality.forget();
+                }
+                Prepared::clone(&wanted.scene)
+            }
+        };
+        prepared.set_camera(&wanted.camera).ok()?;
+        Some(prepared)
+    }
+
+    /// Paint in time.
+    fn draft(&mut self, wanted: &Wanted, prepared: &Prepared) {
+        loop {
+            let start = Instant::now();
+            let draft = self.quality.draft(wanted.settings.size, wanted.settings.depth);
+            let deadline = Deadline { end: self.quality.patience().map(|p| start + p), ..Deadline::default() };
+            let settings = draft_settings(&wanted.settings, &draft);
+            let frame = self.pool.install(|| {
+                let execution = self.execution_of(&draft);
+                let whole = PixelRect::whole(draft.size);
+                let (renderer, cancel) = (&self.renderer, &deadline.cancel);
+                renderer.render(prepared, &settings, &execution, &whole, &deadline, cancel, &Unwatched)
+            });
+            let share = deadline.share();
+            match frame {
+                Ok(frame) => {
+                    let pixels = self
+                        .pool
+                        .install(|| enlarge(&pack(&frame.image.to_rgb8(&settings)), draft.size, wanted.settings.size));
+                    let time = start.elapsed();
+                    self.quality.measured(&draft, time.as_secs_f64(), 1.0);
+                    return self.show(wanted, &draft, pixels, time);
+                }
+                Err(_) => self.quality.measured(&draft, start.elapsed().as_secs_f64(), share),
+            }
+        }
+    }
+
+    fn execution_of(&self, draft: &Draft) -> Execution {
+        let enough = REGIONS_PER_THREAD * self.pool.current_num_threads() as u32;
+        let regions = |side: u32| draft.size[0].div_ceil(side) * draft.size[1].div_ceil(side);
+        let [.., smallest] = REGION_SIDES;
+        let side = REGION_SIDES.into_iter().find(|&side| regions(side) >= enough).unwrap_or(smallest);
+        Execution { region: Region::Rectangle(side, side), ..self.execution }
+    }
+
+    fn show(&self, wanted: &Wanted, draft: &Draft, pixels: Vec<u32>, time: Duration) {
+        self.screen.change(|picture| {
+            picture.size = wanted.settings.size;
+            picture.pixels = pixels;
+            picture.stage = Stage::Draft;
+            picture.draft = (draft.size, draft.depth);
+            picture.draft_time = time;
+            picture.drafts += 1;
+            picture.finished = None;
+        });
+    }
+
+    /// Paint in full, unless stopped.
+    fn refine(&mut self, wanted: &Wanted, prepared: &Prepared, cancel: &Cancel) {
+        let start = Instant::now();
+        let settings = &wanted.settings;
+        let sink = Brush { screen: &self.screen, settings };
+        let frame = self.pool.install(|| {
+            let whole = PixelRect::whole(settings.size);
+            self.renderer.render(prepared, settings, &self.execution, &whole, &sink, cancel, &Unwatched)
+        });
+        if let Ok(frame) = frame {
+            self.finish(wanted, frame, start.elapsed());
+        }
+    }
+
+    fn finish(&self, wanted: &Wanted, frame: Frame, time: Duration) {
+        let Wanted { scene, settings, camera, .. } = wanted.clone();
+        let pixels = self.pool.install(|| pack(&frame.image.to_rgb8(&settings)));
+        let finished = Arc::new(Finished { frame, settings, scene, camera, time });
+        self.screen.change(|picture| {
+            picture.pixels = pixels;
+            picture.stage = Stage::Finished;
+            picture.finished = Some(finished);
+        });
+    }
+}
+
+/// The settings of a draft: smaller, perhaps shallower, one sample a pixel.
+fn draft_settings(settings: &Settings, draft: &Draft) -> Settings {
+    Settings { size: draft.size, depth: draft.depth, antialias: Antialias::Off, ..settings.clone() }
+}
+
+/// Gives a draft up when its time is over.
+#[derive(Default)]
+struct Deadline {
+    end: Option<Instant>,
+    cancel: Cancel,
+    /// Regions that were done, and all of them.
+    done: AtomicU64,
+    total: AtomicU64,
+}
+
+impl Deadline {
+    /// The share of the picture that was painted.
+    fn share(&self) -> f64 {
+        let done = self.done.load(Ordering::Relaxed) as f64;
+        done.max(0.5) / self.total.load(Ordering::Relaxed).max(1) as f64
+    }
+}
+
+impl Progress for Deadline {
+    fn regions_done(&self, _: u32, done: usize, total: usize) {
+        self.done.fetch_max(done as u64, Ordering::Relaxed);
+        self.total.store(total as u64, Ordering::Relaxed);
+        if done < total && self.end.is_some_and(|end| Instant::now() > end) {
+            self.cancel.cancel();
+        }
+    }
+}
+
+/// Paints finished regions on the screen.
+struct Brush<'a> {
+    screen: &'a Screen,
+    settings: &'a Settings,
+}
+
+impl Brush<'_> {
+    fn encoded(&self, pixels: Vec<Vec3f>) -> Vec<u8> {
+        Image { width: pixels.len() as u32, height: 1, pixels }.to_rgb8(self.settings)
+    }
+}
+
+impl Progress for Brush<'_> {
+    fn regions_done(&self, phase: u32, done: usize, total: usize) {
+        let share = (phase - 1) as f32 + done as f32 / total.max(1) as f32;
+        self.screen.change(|picture| picture.stage = Stage::Refining(share));
+    }
+
+    fn painted(&self, rect: &PixelRect, colors: &mut dyn Iterator<Item = Vec3f>) {
+        self.screen.paint(self.settings.size, rect, &self.encoded(colors.collect()));
+    }
+
+    fn refined(&self, pixels: &mut dyn Iterator<Item = ([u32; 2], Vec3f)>) {
+        let (places, colors): (Vec<_>, Vec<_>) = pixels.unzip();
+        self.screen.touch_up(self.settings.size, &places, &self.encoded(colors));
+    }
+}
