@@ -10,13 +10,6 @@ pub(crate) fn load(arguments: &SceneArguments, verbosity: &Verbosity) -> Result<
     load_with(arguments, verbosity, LoadOptions::default())
 }
 
-/// As [`load`], for one who tells errors and warnings in another way.
-#[cfg(feature = "viewer")]
-pub(crate) fn load_silently(arguments: &SceneArguments) -> Result<Loaded, formats::Error> {
-    let options = LoadOptions { allow_outside: arguments.allow_outside, ..LoadOptions::default() };
-    formats::load(&arguments.scene, &options)
-}
-
 /// As [`load`], without what makes a scene look well: no floor is added.
 pub(crate) fn load_shapes(arguments: &SceneArguments, verbosity: &Verbosity) -> Result<Scene, Failure> {
     let options = LoadOptions { furnish: false, ..LoadOptions::default() };

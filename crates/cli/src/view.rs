@@ -2,16 +2,14 @@
 
 use crate::args::{PictureArguments, SceneArguments, ViewArguments};
 use crate::exit::Failure;
-use crate::load::load_silently;
 use crate::output::Target;
-use std::fmt::Write as _;
+use formats::{Format, LoadOptions, Loader};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use viewer::script::{self, ScriptFailure, Step};
 use viewer::{Host, Opened, Options, WindowError};
-use whitted::math::Vec3d;
-use whitted::scene::{Camera, NamedCamera};
+use whitted::scene::{NamedCamera, Scene};
 
 pub(crate) fn run(arguments: &ViewArguments) -> Result<(), Failure> {
     arguments.picture.check()?;
@@ -68,9 +66,13 @@ fn blame(error: &ScriptFailure) -> Failure {
     Failure::Io(error.to_string())
 }
 
+/// Names of cameras that no author gave.
+const NO_NAMES: [&str; 2] = ["default", "auto"];
+
 /// The files of the viewer.
 struct Files {
     path: PathBuf,
+    loader: Mutex<Loader>,
     scene: SceneArguments,
     picture: PictureArguments,
 }
@@ -78,7 +80,7 @@ struct Files {
 impl Files {
     fn new(arguments: &ViewArguments) -> Self {
         let ViewArguments { scene, picture, .. } = arguments.clone();
-        Self { path: scene.scene.clone(), scene, picture }
+        Self { path: scene.scene.clone(), loader: Mutex::default(), scene, picture }
     }
 }
 
@@ -88,7 +90,11 @@ impl Host for Files {
     }
 
     fn open(&self) -> Result<Opened, String> {
-        let loaded = load_silently(&self.scene).map_err(|error| error.to_string())?;
+        let options = LoadOptions { allow_outside: self.scene.allow_outside, ..LoadOptions::default() };
+        // What a panic elsewhere has left is at worst a mesh that is read again.
+        let mut loader = self.loader.lock().unwrap_or_else(PoisonError::into_inner);
+        let loaded = loader.load(&self.path, &options).map_err(|error| error.to_string())?;
+        drop(loader);
         let mut scene = loaded.scene;
         self.picture.choose_camera(&mut scene).map_err(|failure| failure.to_string())?;
         scene.settings = self.picture.over(scene.settings);
@@ -102,45 +108,18 @@ impl Host for Files {
         written.map_err(|failure| failure.to_string())
     }
 
-    fn camera_block(&self, named: &NamedCamera) -> String {
-        block(named)
-    }
-}
-
-/// Names of cameras that the scene's author did not give.
-const NO_NAMES: [&str; 2] = ["default", "auto"];
-
-/// The section of a scene file that describes a camera, in digits enough to give the same picture.
-fn block(NamedCamera { name, camera }: &NamedCamera) -> String {
-    let mut text = String::from("[camera]");
-    if !NO_NAMES.contains(&name.as_str()) {
-        text = format!("[camera.{name:?}]");
-    }
-    let mut line = |key: &str, value: String| _ = write!(text, "\n{key} = {value}");
-    let triple = |v: Vec3d| format!("{:?}", v.to_array());
-    line("eye", triple(camera.eye));
-    line("look_at", triple(camera.look_at));
-    if camera.up != Camera::default().up {
-        line("up", triple(camera.up));
-    }
-    line("vfov", format!("{:?}", camera.vfov));
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use formats::{Format, LoadOptions};
-
-    #[test]
-    fn a_camera_block_is_the_camera() {
-        let eye = Vec3d::new(1.0 / 3.0, -2e-7, 1e21);
-        for (name, up) in [("default", Camera::default().up), ("above the \"table\"", Vec3d::new(0.1, 1.0, 0.0))] {
-            let camera = Camera { eye, look_at: Vec3d::new(0.1, 0.2, 0.3), up, vfov: 33.3 };
-            let text = format!("version = 1\n{}\n", block(&NamedCamera { name: name.to_owned(), camera }));
-            let loaded = formats::parse(Format::Toml, Path::new("x"), text.into_bytes(), &LoadOptions::default());
-            let scene = loaded.expect("a scene").scene;
-            assert_eq!(scene.cameras, [NamedCamera { name: name.to_owned(), camera }]);
+    fn write_back(&self, old: &Scene, new: &Scene) -> Result<(), String> {
+        if Format::of(&self.path) != Ok(Format::Toml) {
+            return Err("only scenes in TOML can be written into".to_owned());
         }
+        let text = std::fs::read_to_string(&self.path).map_err(|error| format!("cannot read the scene: {error}"))?;
+        let written = formats::write_back(&self.path, &text, old, new).map_err(|error| error.to_string())?;
+        let target = Target::check(&self.path).and_then(|target| target.write(written.as_bytes()));
+        target.map_err(|failure| failure.to_string())
+    }
+
+    fn camera_block(&self, named: &NamedCamera) -> String {
+        let name = if NO_NAMES.contains(&named.name.as_str()) { "" } else { &named.name };
+        formats::camera_block(name, &named.camera).trim_end().to_owned()
     }
 }

@@ -53,7 +53,8 @@ impl App {
 
     /// What the person does.
     pub(crate) fn input(&mut self, input: &Input) {
-        self.stale |= !matches!(input, Input::Pointer(_)) || self.session.shown().panel;
+        self.stale |=
+            !matches!(input, Input::Pointer(_)) || self.session.shown().panel || self.session.inspection().is_some();
         let is_for_overlay = self.overlay.take(input, self.session.is_dragging());
         // Tab moves the focus among the panel's fields, and shows and hides the panel: the latter is what is expected.
         if !is_for_overlay || matches!(input, Input::Key(Key::Tab, _)) {

@@ -31,6 +31,13 @@ pub trait Host: Send + Sync + 'static {
     /// Why it could not be written.
     fn save(&self, path: &Path, size: [u32; 2], rgb8: &[u8]) -> Result<(), String>;
 
+    /// Write what differs between `old`, the scene as it was read, and `new` into the scene's file, which otherwise stays
+    /// as it is.
+    ///
+    /// # Errors
+    /// What cannot be written, and why.
+    fn write_back(&self, old: &Scene, new: &Scene) -> Result<(), String>;
+
     /// The camera as it is written in a scene file.
     fn camera_block(&self, camera: &NamedCamera) -> String;
 }

@@ -48,6 +48,6 @@ pub use input::{Button, Input, Key, Modifiers};
 pub use opener::Activity;
 pub use options::Options;
 pub use screen::{Finished, Picture, Stage};
-pub use session::{Effect, Note, Session, Shown};
+pub use session::{Effect, Inspection, Note, Session, Shown};
 #[cfg(feature = "window")]
 pub use window::{WindowError, run};

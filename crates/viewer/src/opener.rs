@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 use whitted::math::Vec3d;
-use whitted::scene::{Prepared, Scene};
+use whitted::scene::{Change, Prepared, Scene, difference};
 use whitted::tree::BuildOptions;
 
 /// How often the files are looked at. Asking the system for the time stamp of a file takes some microseconds, so this
@@ -205,7 +205,7 @@ impl Work {
         self.watch(files);
         self.tell(News::Read(scene.settings.size));
         let start = Instant::now();
-        let same = self.current.as_ref().filter(|ready| has_same_shapes(&ready.scene, &scene));
+        let same = self.current.as_ref().filter(|ready| difference(&ready.scene, &scene) != Change::Geometry);
         let prepared = match same {
             Some(ready) => ready.prepared.with_look_of(&scene),
             None => self.build(&scene),
@@ -238,9 +238,4 @@ impl Work {
             }
         }
     }
-}
-
-/// True if a tree over one is a tree over the other.
-fn has_same_shapes(a: &Scene, b: &Scene) -> bool {
-    a.spheres == b.spheres && a.shapes == b.shapes && a.planes == b.planes && a.meshes == b.meshes
 }

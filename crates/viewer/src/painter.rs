@@ -5,12 +5,13 @@ use crate::quality::{Draft, Quality};
 use crate::screen::{Finished, Screen, Stage};
 use rayon::ThreadPool;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, OnceLock, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use whitted::math::Vec3f;
-use whitted::render::{Cancel, Execution, Frame, Image, PixelRect, Progress, Region, Renderer, Unwatched};
-use whitted::scene::{Antialias, Camera, Prepared, Settings};
+use whitted::render::{Aov, AovPicture, Cancel, Cancelled, Execution, Frame, Image, PixelRect, Progress, Region};
+use whitted::render::{Renderer, Unwatched, aovs};
+use whitted::scene::{Antialias, Camera, NamedCamera, Prepared, Settings};
 
 /// Regions for each thread, at least: else some would wait for others.
 const REGIONS_PER_THREAD: u32 = 4;
@@ -25,6 +26,8 @@ pub(crate) struct Wanted {
     pub(crate) camera: Camera,
     /// Of the finished picture; its size is that of the window.
     pub(crate) settings: Settings,
+    /// What is shown instead of light.
+    pub(crate) view: Option<Aov>,
     /// Things move: there is no use in refining.
     pub(crate) moving: bool,
 }
@@ -32,7 +35,12 @@ pub(crate) struct Wanted {
 impl Wanted {
     /// Whether both give the same picture.
     pub(crate) fn looks_like(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.scene, &other.scene) && self.camera == other.camera && self.settings == other.settings
+        self.view == other.view && self.has_light_of(&other.scene, &other.camera, &other.settings)
+    }
+
+    /// Whether this is that scene, seen by that camera, with those settings.
+    pub(crate) fn has_light_of(&self, scene: &Arc<Prepared>, camera: &Camera, settings: &Settings) -> bool {
+        Arc::ptr_eq(&self.scene, scene) && self.camera == *camera && self.settings == *settings
     }
 }
 
@@ -76,6 +84,7 @@ impl Painter {
             pool,
             execution,
             renderer: Renderer::default(),
+            finished: None,
             scene: None,
         };
         let thread = std::thread::Builder::new().name("painter".to_owned()).spawn(move || work.run())?;
@@ -150,6 +159,8 @@ struct Work {
     execution: Execution,
     quality: Quality,
     renderer: Renderer,
+    /// What was finished last: another view of it needs no other render.
+    finished: Option<Arc<Finished>>,
     /// The scene that was painted last with the camera of the moment, and the one that it was made from.
     scene: Option<(Arc<Prepared>, Prepared)>,
 }
@@ -161,7 +172,8 @@ impl Work {
         while let Some(wanted) = self.desk.next(done.as_ref()) {
             done = Some(Arc::clone(&wanted));
             let Some(prepared) = self.prepared(&wanted) else { continue };
-            if drafted.as_ref().is_none_or(|before| !before.looks_like(&wanted)) {
+            let is_drafted = drafted.as_ref().is_some_and(|before| before.looks_like(&wanted));
+            if !is_drafted && self.finished_light(&wanted).is_none() {
                 self.draft(&wanted, &prepared);
                 drafted = Some(Arc::clone(&wanted));
             }
@@ -176,7 +188,7 @@ impl Work {
 
     /// The scene with the camera that is wanted; `None` if the camera is impossible.
     fn prepared(&mut self, wanted: &Wanted) -> Option<Prepared> {
-        let mut prepared = match self.scene.take() {
+        let prepared = match self.scene.take() {
             Some((source, prepared)) if Arc::ptr_eq(&source, &wanted.scene) => prepared,
             before => {
                 let geometry = before.map(|(source, _)| source);
@@ -186,8 +198,27 @@ impl Work {
                 Prepared::clone(&wanted.scene)
             }
         };
-        prepared.set_camera(&wanted.camera).ok()?;
-        Some(prepared)
+        prepared.with_camera(&nameless(&wanted.camera)).ok()
+    }
+
+    /// The finished frame of what is wanted, if it was finished already.
+    fn finished_light(&self, wanted: &Wanted) -> Option<&Arc<Finished>> {
+        let finished = self.finished.as_ref()?;
+        wanted.has_light_of(&finished.scene, &finished.camera, &finished.settings).then_some(finished)
+    }
+
+    /// What `view` shows of a frame.
+    fn view(
+        &self,
+        view: Option<Aov>,
+        frame: &Frame,
+        prepared: &Prepared,
+        settings: &Settings,
+        cancel: &Cancel,
+    ) -> Result<Option<AovPicture>, Cancelled> {
+        let Some(view) = view else { return Ok(None) };
+        let pictures = self.pool.install(|| aovs(&[view], frame, prepared, settings, &self.execution, &clock, cancel));
+        pictures.map(|pictures| pictures.into_iter().next())
     }
 
     /// Paint in time.
@@ -204,11 +235,13 @@ impl Work {
                 renderer.render(prepared, &settings, &execution, &whole, &deadline, cancel, &Unwatched)
             });
             let share = deadline.share();
-            match frame {
-                Ok(frame) => {
-                    let pixels = self
-                        .pool
-                        .install(|| enlarge(&pack(&frame.image.to_rgb8(&settings)), draft.size, wanted.settings.size));
+            let painted = frame.and_then(|frame| {
+                let view = self.view(wanted.view, &frame, prepared, &settings, &deadline.cancel)?;
+                Ok(view.map_or_else(|| frame.image.to_rgb8(&settings), |view| view.rgb8))
+            });
+            match painted {
+                Ok(rgb8) => {
+                    let pixels = self.pool.install(|| enlarge(&pack(&rgb8), draft.size, wanted.settings.size));
                     let time = start.elapsed();
                     self.quality.measured(&draft, time.as_secs_f64(), 1.0);
                     return self.show(wanted, &draft, pixels, time);
@@ -240,28 +273,48 @@ impl Work {
 
     /// Paint in full, unless stopped.
     fn refine(&mut self, wanted: &Wanted, prepared: &Prepared, cancel: &Cancel) {
-        let start = Instant::now();
-        let settings = &wanted.settings;
-        let sink = Brush { screen: &self.screen, settings };
-        let frame = self.pool.install(|| {
-            let whole = PixelRect::whole(settings.size);
-            self.renderer.render(prepared, settings, &self.execution, &whole, &sink, cancel, &Unwatched)
-        });
-        if let Ok(frame) = frame {
-            self.finish(wanted, frame, start.elapsed());
+        if let Ok(finished) = self.finish(wanted, prepared, cancel) {
+            let settings = &wanted.settings;
+            let pixels = self.pool.install(|| pack(&finished.rgb8()));
+            self.finished = Some(Arc::clone(&finished));
+            self.screen.change(|picture| {
+                picture.size = settings.size;
+                picture.pixels = pixels;
+                picture.stage = Stage::Finished;
+                picture.finished = Some(finished);
+            });
         }
     }
 
-    fn finish(&self, wanted: &Wanted, frame: Frame, time: Duration) {
+    fn finish(&self, wanted: &Wanted, prepared: &Prepared, cancel: &Cancel) -> Result<Arc<Finished>, Cancelled> {
+        let start = Instant::now();
+        let settings = &wanted.settings;
+        let (frame, time) = match self.finished_light(wanted) {
+            Some(finished) => (Arc::clone(&finished.frame), finished.time),
+            None => {
+                let sink = Brush { screen: &self.screen, settings, paints: wanted.view.is_none() };
+                let frame = self.pool.install(|| {
+                    let whole = PixelRect::whole(settings.size);
+                    self.renderer.render(prepared, settings, &self.execution, &whole, &sink, cancel, &Unwatched)
+                })?;
+                (Arc::new(frame), start.elapsed())
+            }
+        };
+        let view = self.view(wanted.view, &frame, prepared, settings, cancel)?;
         let Wanted { scene, settings, camera, .. } = wanted.clone();
-        let pixels = self.pool.install(|| pack(&frame.image.to_rgb8(&settings)));
-        let finished = Arc::new(Finished { frame, settings, scene, camera, time });
-        self.screen.change(|picture| {
-            picture.pixels = pixels;
-            picture.stage = Stage::Finished;
-            picture.finished = Some(finished);
-        });
+        Ok(Arc::new(Finished { frame, view, settings, scene, camera, time }))
     }
+}
+
+/// Nanoseconds since the first call.
+fn clock() -> u64 {
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed().as_nanos() as u64
+}
+
+/// A camera that needs no name.
+pub(crate) fn nameless(camera: &Camera) -> NamedCamera {
+    NamedCamera { name: String::new(), camera: *camera }
 }
 
 /// The settings of a draft: smaller, perhaps shallower, one sample a pixel.
@@ -301,6 +354,8 @@ impl Progress for Deadline {
 struct Brush<'a> {
     screen: &'a Screen,
     settings: &'a Settings,
+    /// False if something else than light is shown: then only progress is.
+    paints: bool,
 }
 
 impl Brush<'_> {
@@ -316,10 +371,15 @@ impl Progress for Brush<'_> {
     }
 
     fn painted(&self, rect: &PixelRect, colors: &mut dyn Iterator<Item = Vec3f>) {
-        self.screen.paint(self.settings.size, rect, &self.encoded(colors.collect()));
+        if self.paints {
+            self.screen.paint(self.settings.size, rect, &self.encoded(colors.collect()));
+        }
     }
 
     fn refined(&self, pixels: &mut dyn Iterator<Item = ([u32; 2], Vec3f)>) {
+        if !self.paints {
+            return;
+        }
         let (places, colors): (Vec<_>, Vec<_>) = pixels.unzip();
         self.screen.touch_up(self.settings.size, &places, &self.encoded(colors));
     }

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
-use whitted::render::{Frame, PixelRect};
+use whitted::render::{AovPicture, Frame, PixelRect};
 use whitted::scene::{Camera, Prepared, Settings};
 
 use crate::enlarge::packed;
@@ -25,7 +25,9 @@ pub enum Stage {
 #[derive(Debug)]
 pub struct Finished {
     /// The picture.
-    pub frame: Frame,
+    pub frame: Arc<Frame>,
+    /// What is shown instead of it.
+    pub view: Option<AovPicture>,
     /// The settings with which it was made.
     pub settings: Settings,
     /// The scene, with the camera of its file.
@@ -34,6 +36,13 @@ pub struct Finished {
     pub camera: Camera,
     /// How long it took from the first region to the last.
     pub time: Duration,
+}
+
+impl Finished {
+    /// What is shown, RGB row by row.
+    pub fn rgb8(&self) -> Vec<u8> {
+        self.view.as_ref().map_or_else(|| self.frame.image.to_rgb8(&self.settings), |view| view.rgb8.clone())
+    }
 }
 
 /// The picture that is shown.

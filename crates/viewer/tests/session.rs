@@ -73,6 +73,11 @@ impl Host for Desk {
         Ok(())
     }
 
+    fn write_back(&self, _: &Scene, new: &Scene) -> Result<(), String> {
+        self.edit(Ok(new.clone()));
+        Ok(())
+    }
+
     fn camera_block(&self, camera: &NamedCamera) -> String {
         format!("{:?}", camera.camera)
     }
@@ -131,8 +136,8 @@ fn rest(session: &mut Session) {
 
 /// What `whitted render` gives with these settings.
 fn expected(scene: &Scene, camera: &Camera, settings: &Settings) -> Vec<u8> {
-    let mut prepared = Prepared::new(scene, &BuildOptions::default()).unwrap();
-    prepared.set_camera(camera).unwrap();
+    let prepared = Prepared::new(scene, &BuildOptions::default()).unwrap();
+    let prepared = prepared.with_camera(&NamedCamera { name: String::new(), camera: *camera }).unwrap();
     render(&prepared, settings, &Execution::default(), &Silent, &Cancel::new()).unwrap().image.to_rgb8(settings)
 }
 

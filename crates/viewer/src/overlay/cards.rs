@@ -6,6 +6,7 @@ use crate::opener::Activity;
 use crate::session::Session;
 use egui::{Align2, Area, Context, Grid, Id, Order, RichText, Stroke, vec2};
 use std::time::{Duration, Instant};
+use whitted::render::{Aov, Legend, heat};
 
 /// A clock on a card moves this often.
 const CLOCK: Duration = Duration::from_millis(100);
@@ -64,6 +65,47 @@ pub(super) fn trouble(context: &Context, session: &Session) {
             ui.label(RichText::new(rest).color(FAINT).small());
         });
     });
+}
+
+/// What the colours of a view stand for.
+pub(super) fn legend(context: &Context, session: &Session) {
+    let Some(view) = session.view() else { return };
+    let finished = session.picture().finished.clone();
+    let shown = finished.as_ref().and_then(|finished| finished.view.as_ref()).filter(|shown| shown.aov == view);
+    let scale = shown.and_then(|shown| shown.legend);
+    let area = Area::new(Id::new("legend")).anchor(Align2::RIGHT_BOTTOM, vec2(-10.0, -10.0)).order(Order::Middle);
+    area.interactable(false).show(context, |ui| {
+        card().show(ui, |ui| {
+            ui.label(RichText::new(view.what()).color(TEXT));
+            if let Some(Legend { first, last }) = scale {
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(amount(first)).monospace());
+                    bar_of_colours(ui, view);
+                    let more = if view.is_cost() { "+" } else { "" };
+                    ui.label(RichText::new(amount(last) + more).monospace());
+                });
+            }
+        });
+    });
+}
+
+/// A number in a few digits.
+fn amount(value: f32) -> String {
+    if value.abs() >= 1000.0 { super::status::short(f64::from(value)) } else { format!("{value:.3}") }
+}
+
+/// All colours of a view's scale, from the first to the last.
+fn bar_of_colours(ui: &mut egui::Ui, view: Aov) {
+    let (response, painter) = ui.allocate_painter(vec2(180.0, 12.0), egui::Sense::hover());
+    let bar = response.rect;
+    let steps = bar.width() as usize;
+    for step in 0..steps {
+        let share = step as f32 / steps.max(1) as f32;
+        let [r, g, b] = if view.is_cost() { heat(share) } else { [(255.0 * (1.0 - 0.8 * share)) as u8; 3] };
+        let left = bar.left() + step as f32;
+        let part = egui::Rect::from_min_max(egui::pos2(left, bar.top()), egui::pos2(left + 1.0, bar.bottom()));
+        painter.rect_filled(part, 0.0, egui::Color32::from_rgb(r, g, b));
+    }
 }
 
 /// Short messages.

@@ -2,6 +2,7 @@
 
 mod cards;
 mod events;
+mod inspector;
 mod panel;
 mod status;
 mod theme;
@@ -113,7 +114,9 @@ fn show(ui: &mut egui::Ui, session: &mut Session, panel: &mut panel::Panel, now:
         return;
     }
     status::show(&context, session, now);
+    cards::legend(&context, session);
     cards::notes(&context, session);
+    inspector::show(&context, session);
     if session.shown().panel {
         panel.show(&context, session);
     }

@@ -9,6 +9,7 @@ use egui::{
     Align2, CollapsingHeader, ComboBox, Context, DragValue, Grid, RichText, ScrollArea, Slider, Ui, Window, vec2,
 };
 use whitted::math::{Vec3d, Vec3f};
+use whitted::render::Aov;
 use whitted::scene::{Antialias, Background, Light, LightKind, Settings, Shadows, Tone};
 use whitted::shading::{Material, Reflectance, SpecularModel, Texture};
 
@@ -33,6 +34,7 @@ impl Panel {
             ScrollArea::vertical().max_height(height - 30.0).show(ui, |ui| {
                 ui.set_width(WIDTH);
                 ui.label(RichText::new(session.title()).heading());
+                view(ui, session);
                 section(ui, "Picture", true, |ui| picture(ui, session));
                 section(ui, "Cameras", true, |ui| cameras(ui, session));
                 section(ui, "Materials", false, |ui| self.materials(ui, session));
@@ -76,12 +78,32 @@ fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
     ui.end_row();
 }
 
+/// What is shown: light, or something else.
+fn view(ui: &mut Ui, session: &mut Session) {
+    let mut view = session.view();
+    ComboBox::from_id_salt("view").selected_text(view.map_or("picture", Aov::name)).width(WIDTH - 20.0).show_ui(
+        ui,
+        |ui| {
+            ui.selectable_value(&mut view, None, "picture");
+            for (name, aov) in Aov::ALL {
+                ui.selectable_value(&mut view, Some(aov), name);
+            }
+        },
+    );
+    session.set_view(view);
+}
+
 fn picture(ui: &mut Ui, session: &mut Session) {
     let mut settings = session.settings().clone();
     grid(ui, "picture", |ui| picture_rows(ui, &mut settings));
     if settings != *session.settings() {
         session.set_settings(settings);
     }
+    ui.horizontal(|ui| {
+        if ui.add_enabled(session.is_changed(), egui::Button::new("write into the file")).clicked() {
+            session.write_back();
+        }
+    });
     ui.horizontal(|ui| {
         if ui.button("save picture").clicked() {
             session.act(Action::Save);

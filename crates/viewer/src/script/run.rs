@@ -187,7 +187,7 @@ impl Puppet<'_> {
     fn save(&mut self, path: &Path) -> Result<(), String> {
         self.act(&Step::WaitRefined)?;
         let finished = self.app.session.finished().ok_or("there is no finished picture")?;
-        let rgb8 = finished.frame.image.to_rgb8(&finished.settings);
+        let rgb8 = finished.rgb8();
         self.host.save(path, finished.settings.size, &rgb8)
     }
 

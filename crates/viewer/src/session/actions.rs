@@ -8,7 +8,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 use whitted::math::Vec3d;
-use whitted::scene::{Camera, NamedCamera};
+use whitted::render::Aov;
+use whitted::scene::{Camera, NamedCamera, Scene, Settings};
 
 impl Session {
     /// Do what is asked for.
@@ -21,7 +22,8 @@ impl Session {
             Action::NextCamera => self.next_camera(now),
             Action::Turntable => self.navigator.toggle_turntable(),
             Action::Reload => self.opener.reload(),
-            Action::NextView | Action::PreviousView => {}
+            Action::NextView => self.step_view(1),
+            Action::PreviousView => self.step_view(Aov::ALL.len()),
             Action::CopyCamera => self.copy_camera(now),
             Action::Save => self.save(None),
             Action::Record => self.record(now),
@@ -36,9 +38,19 @@ impl Session {
     fn close(&mut self) {
         if self.shown.help {
             self.shown.help = false;
+        } else if self.inspector.current().is_some() {
+            self.inspector.forget();
         } else {
             self.effects.push(Effect::Close);
         }
+    }
+
+    /// Go on by so many views, in a circle of light and all others.
+    fn step_view(&mut self, steps: usize) {
+        let count = Aov::ALL.len() + 1;
+        let now = self.view.map_or(0, |view| 1 + Aov::ALL.iter().position(|(_, aov)| *aov == view).unwrap_or(0));
+        let next = (now + steps) % count;
+        self.view = next.checked_sub(1).map(|index| Aov::ALL[index].1);
     }
 
     fn home(&self) -> Option<Camera> {
@@ -92,6 +104,38 @@ impl Session {
         self.notes.add("the camera is on the clipboard", now);
     }
 
+    /// True if materials, lights or settings are not those of the file.
+    pub fn is_changed(&self) -> bool {
+        let Some((ready, look)) = self.ready.as_ref().zip(self.look.as_ref()) else { return false };
+        let (scene, size) = (&ready.scene, ready.scene.settings.size);
+        let settings = Settings { size, ..self.settings.clone() };
+        settings != scene.settings
+            || look.materials != scene.materials
+            || look.lights != scene.lights
+            || look.ambient != scene.ambient
+            || look.background != scene.background
+    }
+
+    /// Write materials, lights and settings into the scene's file, whose comments and all else stay.
+    pub fn write_back(&mut self) {
+        let Some((ready, look)) = self.ready.as_ref().zip(self.look.clone()) else { return };
+        let (host, old, settings) = (Arc::clone(&self.host), Arc::clone(&ready.scene), self.settings.clone());
+        self.errands.run(move |tell| {
+            let new = Scene {
+                settings: Settings { size: old.settings.size, ..settings },
+                materials: look.materials,
+                lights: look.lights,
+                ambient: look.ambient,
+                background: look.background,
+                ..Scene::clone(&old)
+            };
+            match host.write_back(&old, &new) {
+                Ok(()) => tell(format!("written into {}", host.path().display())),
+                Err(text) => tell(text),
+            }
+        });
+    }
+
     /// Save the picture when it is finished, under this name or one that is free.
     pub fn save(&mut self, path: Option<PathBuf>) {
         if self.finished().is_none() {
@@ -111,7 +155,7 @@ impl Session {
             self.errands.run(move |tell| {
                 let free = path.as_os_str().is_empty();
                 let path = if free { free_name(host.path(), "", ".png") } else { path };
-                let rgb8 = finished.frame.image.to_rgb8(&finished.settings);
+                let rgb8 = finished.rgb8();
                 match host.save(&path, finished.settings.size, &rgb8) {
                     Ok(()) => tell(format!("saved {}", path.display())),
                     Err(text) => tell(text),

@@ -4,6 +4,7 @@
 //! [`Session::tick`] now and then, and shows [`Session::picture`]. No call waits for the renderer, the reader or the disk.
 
 mod actions;
+mod inspection;
 mod notes;
 mod rate;
 mod recorder;
@@ -14,17 +15,20 @@ use crate::host::Host;
 use crate::input::{Button, Input, Key};
 use crate::opener::{Activity, News, Opener, Ready};
 use crate::options::Options;
-use crate::painter::{Painter, Wanted};
+use crate::painter::{Painter, Wanted, nameless};
 use crate::pick::{self, Picked};
 use crate::screen::{Finished, Picture, Screen, Stage};
+use inspection::Inspector;
 use notes::Notes;
 use rate::Rate;
 use recorder::Recorder;
 use std::sync::{Arc, MutexGuard};
 use std::time::{Duration, Instant};
 use whitted::math::Vec3d;
+use whitted::render::Aov;
 use whitted::scene::{Camera, Prepared, Scene, Settings};
 
+pub use inspection::Inspection;
 pub use notes::Note;
 
 /// The picture is refined when nothing has moved for so long.
@@ -74,6 +78,9 @@ pub struct Session {
     settings: Settings,
     proposed_size: Option<[u32; 2]>,
     trouble: Option<String>,
+    /// What is shown instead of light.
+    view: Option<Aov>,
+    inspector: Inspector,
     notes: Notes,
     rate: Rate,
     recorder: Recorder,
@@ -105,7 +112,9 @@ impl Session {
         let opener = Opener::start(Arc::clone(&host), options.build, threads, Arc::clone(&wake))?;
         let painter = Painter::start(Arc::clone(&screen), Arc::clone(&pool), options.execution, options.fps_target)?;
         Ok(Self {
-            errands: Errands::start(wake)?,
+            errands: Errands::start(Arc::clone(&wake))?,
+            inspector: Inspector::new(wake),
+            view: None,
             painter,
             opener,
             screen,
@@ -138,6 +147,7 @@ impl Session {
         while let Some(news) = self.opener.news() {
             self.hear(news, now);
         }
+        self.inspector.listen();
         while let Some(line) = self.errands.told() {
             self.notes.add(line, now);
         }
@@ -213,6 +223,7 @@ impl Session {
             scene: Arc::clone(scene),
             camera: *self.navigator.camera(),
             settings: self.settings.clone(),
+            view: self.view,
             moving: self.quiet_in(now).is_some() || self.navigator.is_moving(),
         };
         let is_new = self.wanted.as_ref().is_none_or(|old| !old.looks_like(&wanted) || old.moving != wanted.moving);
@@ -244,11 +255,48 @@ impl Session {
     }
 
     fn clicked(&mut self, click: Click) {
-        if click.button == Button::Middle
-            && let Some(picked) = self.pick(click.at)
-        {
-            self.navigator.look_at(picked.point);
+        match click.button {
+            Button::Left => self.inspect(click.at),
+            Button::Middle => {
+                if let Some(picked) = self.pick(click.at) {
+                    self.navigator.look_at(picked.point);
+                }
+            }
+            Button::Right => {}
         }
+    }
+
+    /// Ask why a pixel of the picture looks as it does.
+    fn inspect(&mut self, at: [f64; 2]) {
+        let Some(scene) = &self.shown_scene else { return };
+        if let Ok(scene) = scene.with_camera(&nameless(self.navigator.camera())) {
+            self.inspector.ask(at.map(|a| a.max(0.0) as u32), scene, self.settings.clone());
+        }
+    }
+
+    /// The pixel that is looked at.
+    pub fn inspection(&self) -> Option<&Inspection> {
+        self.inspector.current()
+    }
+
+    /// Look at a ray of that pixel, by its number.
+    pub fn choose_ray(&mut self, ray: Option<usize>) {
+        self.inspector.choose(ray);
+    }
+
+    /// Look at no pixel any more.
+    pub fn forget_pixel(&mut self) {
+        self.inspector.forget();
+    }
+
+    /// What is shown instead of light.
+    pub fn view(&self) -> Option<Aov> {
+        self.view
+    }
+
+    /// Show this instead of light; `None`: light.
+    pub fn set_view(&mut self, view: Option<Aov>) {
+        self.view = view;
     }
 
     fn key(&mut self, key: Key) {
@@ -295,9 +343,8 @@ impl Session {
         let wanted = self.wanted.as_ref().filter(|wanted| !wanted.moving)?;
         let picture = self.picture();
         let finished = picture.finished.as_ref().filter(|_| picture.stage == Stage::Finished)?;
-        let is_it = Arc::ptr_eq(&finished.scene, &wanted.scene)
-            && finished.camera == wanted.camera
-            && finished.settings == wanted.settings;
+        let is_it = wanted.has_light_of(&finished.scene, &finished.camera, &finished.settings)
+            && finished.view.as_ref().map(|view| view.aov) == wanted.view;
         is_it.then(|| Arc::clone(finished))
     }
 

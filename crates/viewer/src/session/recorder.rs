@@ -7,6 +7,7 @@ use whitted::render::{Cancel, Execution, PixelRect, Renderer, Silent, Unwatched}
 use whitted::scene::{Camera, Prepared, Settings};
 
 use crate::host::Host;
+use crate::painter::nameless;
 
 /// Pictures for each second of a recorded way.
 const RATE: f64 = 30.0;
@@ -104,9 +105,8 @@ impl Film {
         std::fs::create_dir(&folder)
             .map_err(|error| format!("cannot make the folder {}: {error}", folder.display()))?;
         let renderer = Renderer::default();
-        let mut scene = Prepared::clone(&self.scene);
         for (number, camera) in (1..).zip(&self.cameras) {
-            scene.set_camera(camera)?;
+            let scene = self.scene.with_camera(&nameless(camera)).map_err(|error| error.to_string())?;
             let whole = PixelRect::whole(self.settings.size);
             let render =
                 || renderer.render(&scene, &self.settings, &self.execution, &whole, &Silent, &self.cancel, &Unwatched);

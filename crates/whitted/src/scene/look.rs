@@ -37,11 +37,7 @@ pub struct Look {
 
 impl Look {
     /// The look of a scene that has passed [`check::scene`], in which the primitives have these materials by number.
-    pub(super) fn new(
-        scene: &Scene,
-        geometry: &Geometry,
-        primitive_materials: Arc<[u32]>,
-    ) -> Result<Self, SceneError> {
+    pub(super) fn new(scene: &Scene, geometry: &Geometry, primitive_materials: Arc<[u32]>) -> Result<Self, SceneError> {
         check::material_indices(&primitive_materials, scene.materials.len())?;
         let space = geometry.space();
         let prepare = |material| PreparedMaterial::new(material, space.origin(), space.scale());

@@ -1,7 +1,7 @@
 //! A scene that has been checked and is ready to be rendered.
 
-use super::{check, look};
 use super::{Change, Geometry, Look, NamedCamera, Scene, SceneError, difference};
+use super::{check, look};
 use crate::tree::BuildOptions;
 use std::sync::Arc;
 
