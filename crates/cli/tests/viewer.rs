@@ -115,7 +115,7 @@ fn the_window_can_be_closed_while_it_is_busy() {
     let many = "[[generate]]\nkind = \"sphere-cube\"\ncount = 300000\nseed = 1\nmaterial = \"ball\"\n";
     fs::write(&file, scene("#c04020", CAMERA) + many).unwrap();
     let mut viewer = Viewer::open(&desk, &folder, &["--size", SIZE], &file);
-    viewer.close();
+    viewer.key("Escape");
     assert_eq!(viewer.exit_code(), 0);
 }
 

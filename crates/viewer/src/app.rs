@@ -2,6 +2,7 @@
 
 use crate::enlarge::stretch;
 use crate::input::{Input, Key};
+use crate::opener::Activity;
 use crate::overlay::Overlay;
 use crate::session::Session;
 use std::time::{Duration, Instant};
@@ -20,6 +21,8 @@ pub(crate) struct App {
     size: [u32; 2],
     /// The version of the picture that was drawn last.
     drawn: u64,
+    /// What lay over it: its revision, and what the opener was doing.
+    drawn_over: (u64, Activity),
     last_draw: Option<Instant>,
     /// Something else than the picture has changed.
     stale: bool,
@@ -28,7 +31,15 @@ pub(crate) struct App {
 impl App {
     /// A window of this size with so many physical pixels for each unit of layout.
     pub(crate) fn new(session: Session, size: [u32; 2], scale: f32) -> Self {
-        Self { session, overlay: Overlay::new(scale), size, drawn: 0, last_draw: None, stale: true }
+        Self {
+            session,
+            overlay: Overlay::new(scale),
+            size,
+            drawn: 0,
+            drawn_over: (0, Activity::Idle),
+            last_draw: None,
+            stale: true,
+        }
     }
 
     /// The window has this size now.
@@ -69,6 +80,7 @@ impl App {
             let picture = self.session.picture();
             (picture.version, matches!(picture.stage, crate::Stage::Draft | crate::Stage::Finished))
         };
+        self.stale |= self.drawn_over != (self.session.revision(), self.session.activity());
         let is_due = self.overlay.next(now).is_some_and(|rest| rest.is_zero());
         if self.stale || is_due || (version != self.drawn && is_draft) {
             return (next, true);
@@ -90,6 +102,7 @@ impl App {
         }
         let now = Instant::now();
         self.drawn = self.copy_picture(pixels);
+        self.drawn_over = (self.session.revision(), self.session.activity());
         self.last_draw = Some(now);
         self.stale = false;
         self.overlay.draw(&mut self.session, pixels, size);

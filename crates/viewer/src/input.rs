@@ -103,10 +103,6 @@ impl Key {
         match self {
             Self::Char(c) => c.to_uppercase().collect(),
             Self::Function(n) => format!("F{n}"),
-            Self::Up => "↑".to_owned(),
-            Self::Down => "↓".to_owned(),
-            Self::Left => "←".to_owned(),
-            Self::Right => "→".to_owned(),
             Self::Escape => "Esc".to_owned(),
             _ => {
                 let name = Self::NAMED.iter().find(|(_, key)| *key == self).map_or("", |(name, _)| name);

@@ -7,11 +7,11 @@ const SHARE: f64 = 0.8;
 
 /// The least resolution, in pixels of the window along an edge of a pixel that is drawn, before depth is given up, and
 /// in all.
-const COARSE: f64 = 5.0;
-const COARSEST: f64 = 10.0;
+const COARSE: f64 = 8.0;
+const COARSEST: f64 = 12.0;
 
 /// Depth comes back when the resolution is this fine again: one generation more rarely doubles the rays.
-const FINE: f64 = 3.3;
+const FINE: f64 = 5.5;
 
 /// Sizes that differ by less than this factor are not worth the flicker of changing between them.
 const STEADY: f64 = 1.12;
@@ -25,8 +25,9 @@ const PATIENCE: f64 = 1.6;
 /// Before anything was measured: seconds for a pixel on one thread of a slow machine.
 const FIRST_GUESS: f64 = 4e-6;
 
-/// Fewest generations of secondary rays that are kept while there are any: mirrors stay mirrors.
-const LEAST_DEPTH: u32 = 1;
+/// Fewest generations of secondary rays that are kept if there are as many: light goes into glass, out of it, and is
+/// mirrored. With less, glass is black.
+const LEAST_DEPTH: u32 = 3;
 
 /// A picture to be drawn while things move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,7 +162,7 @@ mod tests {
         let (draft, _) = draw(&mut quality, 30, 6e-8, 0.0);
         assert_eq!(draft.depth, 5, "half the resolution is enough: {draft:?}");
         let (draft, _) = draw(&mut quality, 30, 3e-6, 0.0);
-        assert!(draft.depth == 1 && quality.resolution() < 0.2, "{draft:?}");
+        assert!(draft.depth == LEAST_DEPTH && quality.resolution() < 0.2, "{draft:?}");
         let (draft, _) = draw(&mut quality, 60, 1e-9, 0.0);
         assert_eq!(draft, Draft { size: FULL, depth: 5 });
     }

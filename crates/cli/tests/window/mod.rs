@@ -162,11 +162,6 @@ impl<'a> Viewer<'a> {
         self.tell(&["windowsize", &self.window, &width.to_string(), &height.to_string()]);
     }
 
-    /// Ask the window to close, as its button does.
-    pub(crate) fn close(&self) {
-        self.tell(&["windowquit", &self.window]);
-    }
-
     /// What the window shows.
     fn picture(&self) -> Vec<u8> {
         let mut import = self.desk.command("import", &["-window", &self.window, "png:-"]);

@@ -55,14 +55,18 @@ pub(super) fn trouble(context: &Context, session: &Session) {
                 match line.strip_prefix("hint: ") {
                     Some(hint) => ui.label(RichText::new(hint).color(TEXT)),
                     // Spaces matter: the caret stands below its place.
-                    None => ui.add(egui::Label::new(RichText::new(line).monospace()).extend()),
+                    None => {
+                        let is_caret = line.trim_start().starts_with('^');
+                        let text = RichText::new(line).monospace().color(if is_caret { WRONG } else { TEXT });
+                        ui.add(egui::Label::new(text).extend())
+                    }
                 };
             }
             let rest = match session.scene() {
                 Some(_) => "The last good picture stays. Mend the file and save it.",
                 None => "Mend the file and save it.",
             };
-            ui.label(RichText::new(rest).color(FAINT).small());
+            ui.label(RichText::new(rest).color(FAINT).size(12.0));
         });
     });
 }

@@ -47,13 +47,16 @@ impl Inspector {
         let _ = std::thread::Builder::new().name("inspector".to_owned()).spawn(ask);
     }
 
-    /// Take in an answer.
-    pub(super) fn listen(&mut self) {
+    /// Take in an answer. Tells whether there was one.
+    pub(super) fn listen(&mut self) -> bool {
+        let mut heard = false;
         for tree in self.inbox.try_iter() {
             if let Some(current) = self.current.as_mut().filter(|current| current.pixel == tree.pixel) {
                 current.tree = Some(Arc::new(tree));
+                heard = true;
             }
         }
+        heard
     }
 
     /// Ask nothing any more.

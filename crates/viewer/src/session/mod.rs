@@ -76,6 +76,8 @@ pub struct Session {
     shown_scene: Option<Arc<Prepared>>,
     /// Of the finished picture; the scene's, as changed by the person, in the size of the window.
     settings: Settings,
+    /// Counts what has changed beside the picture.
+    revision: u64,
     proposed_size: Option<[u32; 2]>,
     trouble: Option<String>,
     /// What is shown instead of light.
@@ -127,6 +129,7 @@ impl Session {
             look: None,
             shown_scene: None,
             settings: Settings { size, ..Settings::default() },
+            revision: 0,
             proposed_size: None,
             trouble: None,
             notes: Notes::default(),
@@ -147,9 +150,10 @@ impl Session {
         while let Some(news) = self.opener.news() {
             self.hear(news, now);
         }
-        self.inspector.listen();
+        self.revision += u64::from(self.inspector.listen());
         while let Some(line) = self.errands.told() {
             self.notes.add(line, now);
+            self.revision += 1;
         }
         let seconds = self.last_tick.map_or(0.0, |last| now.duration_since(last).as_secs_f64());
         self.last_tick = Some(now);
@@ -159,7 +163,7 @@ impl Session {
         self.recorder.observe(self.navigator.camera(), now);
         self.order(now);
         self.save_what_waits();
-        self.notes.clear_old(now);
+        self.revision += u64::from(self.notes.clear_old(now));
         self.next_tick(now)
     }
 
@@ -182,6 +186,7 @@ impl Session {
     }
 
     fn hear(&mut self, news: News, now: Instant) {
+        self.revision += 1;
         match news {
             News::Read(size) => self.proposed_size = Some(size),
             News::Broken(text) => self.trouble = Some(text),
@@ -331,6 +336,11 @@ impl Session {
     /// The size of the picture that the scene asks for, once it is read.
     pub fn proposed_size(&self) -> Option<[u32; 2]> {
         self.proposed_size
+    }
+
+    /// Counts what has changed beside the picture: with another number, what lies over the picture is another.
+    pub fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// The picture, for a moment: copy it and let it go.

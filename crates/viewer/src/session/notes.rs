@@ -28,13 +28,16 @@ impl Notes {
         self.0.drain(..surplus);
     }
 
-    /// Forget what was shown long enough; time until the next one ends.
+    /// Time until the next one ends.
     pub(super) fn next_end(&self, now: Instant) -> Option<Duration> {
         self.0.iter().map(|note| SHOWN.saturating_sub(now.duration_since(note.since))).min()
     }
 
-    pub(super) fn clear_old(&mut self, now: Instant) {
+    /// Forget what was shown long enough. Tells whether that was anything.
+    pub(super) fn clear_old(&mut self, now: Instant) -> bool {
+        let before = self.0.len();
         self.0.retain(|note| now.duration_since(note.since) < SHOWN);
+        self.0.len() < before
     }
 
     pub(super) fn all(&self) -> &[Note] {
