@@ -16,7 +16,7 @@ pub struct Statistics {
     pub refracted_rays: u64,
     /// Camera rays that hit something.
     pub camera_hits: u64,
-    /// Primitives tested against a ray (not blocks of primitives); exempt from the determinism of pictures.
+    /// Primitives tested against a ray, unused places of leaf blocks included; exempt from the determinism of pictures.
     pub primitive_tests: u64,
     /// Nodes visited by a ray; exempt from the determinism of pictures.
     pub node_steps: u64,

@@ -15,7 +15,7 @@ pub enum Change {
 
 /// What differs between `old` and `new`. Coordinates that are not numbers differ from themselves.
 ///
-/// Compares every coordinate: about a millisecond for 100 000 spheres, and ten for a million triangles.
+/// Compares every coordinate, in one pass over what both hold: nothing beside building a tree.
 pub fn difference(old: &Scene, new: &Scene) -> Change {
     match (same_geometry(old, new), same_look(old, new)) {
         (false, _) => Change::Geometry,

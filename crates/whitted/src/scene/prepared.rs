@@ -58,7 +58,7 @@ impl Prepared {
         Ok(Self { geometry: Arc::clone(&self.geometry), look })
     }
 
-    /// The same scene seen by another camera, in world space: takes no time.
+    /// The same scene seen by another camera, in world space: only materials and lights are copied.
     ///
     /// # Errors
     /// [`SceneError::Camera`] if it sees nothing or everything.
