@@ -13,10 +13,12 @@ use crate::variant::Built;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use whitted::render::{
-    Aov, AovPicture, Cancel, Classic, Frame, PixelRect, aovs, aovs_classic, render_classic, render_rect,
+    Aov, AovPicture, Cancel, Classic, Execution, Frame, Method, PixelRect, aovs, aovs_classic, render_classic,
+    render_rect,
 };
 use whitted::scene::{Prepared, Scene};
 use whitted::tree::BuildOptions;
+use whitted::tree::policy::{self, Origins, RaySort};
 
 pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     arguments.picture.check()?;
@@ -35,6 +37,9 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     });
     stop_if(cancel)?;
     tell_details(arguments, &scene, &prepared, pool.current_num_threads());
+    if classic.is_none() && arguments.verbosity.verbose {
+        tell_walks(&prepared, &arguments.execution.execution());
+    }
     let watch = Stopwatch::default();
     let job = Job { prepared: &prepared, classic: classic.as_ref(), rectangle, scene: &scene, arguments };
     let frame = timed(&mut report.trace, || pool.install(|| job.trace(cancel, &watch)))?;
@@ -190,6 +195,21 @@ fn tell_details(arguments: &RenderArguments, scene: &Scene, prepared: &Prepared,
     eprintln!("{threads} threads, {level}");
     if prepared.geometry().dropped() > 0 {
         eprintln!("{} degenerate primitives can never be hit", prepared.geometry().dropped());
+    }
+}
+
+/// Say how each sort of rays goes through the tree, and why.
+fn tell_walks(prepared: &Prepared, execution: &Execution) {
+    const SORTS: [(&str, Origins); 2] =
+        [("rays from the camera and to lights", Origins::Shared), ("reflected and refracted rays", Origins::Own)];
+    let count = match execution.method {
+        Method::Wavefront => usize::MAX,
+        Method::Recursive => 1,
+    };
+    let geometry = prepared.geometry();
+    for (rays, origins) in SORTS {
+        let sort = RaySort { count, origins, every_hit: false };
+        eprintln!("{rays}: {}", policy::choose(execution.walk, geometry.tree(), geometry.primitives(), &sort));
     }
 }
 

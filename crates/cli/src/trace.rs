@@ -18,6 +18,7 @@ use whitted::ray::{HitBatch, RayBatch};
 use whitted::render::Cancel;
 use whitted::scene::Space;
 use whitted::tree::BuildOptions;
+use whitted::tree::policy::{Origins, RaySort};
 
 /// Rays that are read, traced and written at a time: enough for all threads, few enough for their caches.
 const PIECE: usize = 1 << 16;
@@ -160,6 +161,8 @@ impl Shapes {
         let scene = RayScene::from_primitives(primitives, &options);
         if arguments.verbosity.verbose {
             eprintln!("{name}: {} primitives, {} of them degenerate", scene.len(), scene.dropped());
+            let sort = RaySort { count: PIECE, origins: Origins::Unknown, every_hit: false };
+            eprintln!("rays go through the tree {}", scene.choice(&sort));
         }
         Ok(Self { scene, space })
     }

@@ -161,6 +161,17 @@ fn a_pixel_is_explained_to_people_and_to_programs() {
 }
 
 #[test]
+fn how_rays_are_walked_is_told_to_whom_asks() {
+    let folder = folder("walk");
+    let arguments = ["render", "scene.nff", "-v", "-o", "a.png"];
+    let camera = "rays from the camera and to lights: in packets of 64";
+    let others = "reflected and refracted rays: in lists, short ones in turns, because";
+    expect(&folder, &arguments, 0, &[camera, others]);
+    expect(&folder, &[&arguments[..], &["--walk", "single"]].concat(), 0, &["one by one, because it was asked for"]);
+    expect(&folder, &[&arguments[..], &["--render", "recursive"]].concat(), 0, &["because there is only one"]);
+}
+
+#[test]
 fn a_read_only_picture_is_not_replaced() {
     let folder = folder("read_only");
     let picture = folder.join("a.png");

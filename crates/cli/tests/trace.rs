@@ -87,6 +87,15 @@ fn rays_in_text_give_hits_in_text() {
 }
 
 #[test]
+fn how_rays_are_walked_is_told_to_whom_asks() {
+    let folder = folder("walk");
+    for (tree, words) in [("best", "rays go through the tree in packets of 64"), ("none", "there is no tree")] {
+        let arguments = ["square.obj", "rays.csv", "-v", "--tree", tree];
+        assert_eq!(expect(&folder, &arguments, b"", 0, &[words, ", because "]), HITS.as_bytes());
+    }
+}
+
+#[test]
 fn every_tree_and_number_of_threads_gives_the_same_bytes() {
     let folder = folder("execution");
     for options in [["--tree", "none"], ["--tree", "fast"], ["--tree", "kd"], ["-t", "1"], ["-t", "3"]] {

@@ -4,6 +4,7 @@ use super::{RaySceneBuilder, RaySceneError};
 use crate::geometry::{Primitives, SurfacePoint};
 use crate::math::Aabb;
 use crate::ray::{Hit, Ray, Rays, Row};
+use crate::tree::policy::{self, Choice, RaySort};
 use crate::tree::{BuildOptions, Query, Tree, WalkKind};
 use simd::Level;
 use std::ops::Range;
@@ -131,6 +132,11 @@ impl RayScene {
     /// If `hit` is a miss, or not from this scene.
     pub fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         self.primitives.surface_point(ray, hit)
+    }
+
+    /// How rays of a sort are walked, and why.
+    pub fn choice(&self, rays: &RaySort) -> Choice {
+        policy::choose(WalkKind::Auto, &self.tree, &self.primitives, rays)
     }
 
     pub(super) fn query(&self, walk: WalkKind) -> Query<'_> {

@@ -18,6 +18,7 @@ mod fit;
 mod goal;
 mod leaf;
 mod node;
+pub mod policy;
 mod query;
 mod refit;
 mod validate;
@@ -55,8 +56,7 @@ pub enum TreeKind {
 /// How rays are walked through the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum WalkKind {
-    /// The walk that suits the rays: packets of 64 that share an origin and an axis are bounded by a pyramid, the rest
-    /// are streamed, short lists of them ray by ray in turns.
+    /// The walk that suits the rays, as [`policy::choose`] says.
     #[default]
     Auto,
     /// Lists of up to 16 384 rays pushed through the tree together.

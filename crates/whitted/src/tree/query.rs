@@ -3,6 +3,7 @@
 use super::all_hits::Sieve;
 use super::filter::Filtered;
 use super::goal::{Any, Closest, Goal, Next};
+use super::policy::{self, Origins, RaySort, Way};
 use super::walk::{self, Lists, PreparedRays};
 use super::{BitSet, Filter, Occlusion, Tree, TreeKind, WalkKind, brute_force};
 use crate::geometry::{self, Primitives};
@@ -199,22 +200,15 @@ impl Query<'_> {
     ) -> Counts {
         let Scratch { rays: prepared, lists, .. } = scratch;
         let first = chunk.start;
+        let sort = RaySort { count: chunk.len(), origins: Origins::Unknown, every_hit: G::EVERY_CROSSING };
         prepared.begin(self.level, self.tree, self.primitives, rays, chunk);
-        let mut counts = walk::planes(self.primitives, prepared, goal);
-        counts += match self.tree.kind() {
-            TreeKind::None => brute_force::walk(self.tree, self.primitives, rays, first, prepared, goal),
-            _ => {
-                let (tree, primitives) = (self.tree, self.primitives);
-                let kernel = walk::Walk {
-                    tree,
-                    primitives,
-                    kind: self.walk,
-                    batch: rays,
-                    start: first,
-                    rays: prepared,
-                    lists,
-                    goal,
-                };
+        let (tree, primitives) = (self.tree, self.primitives);
+        let mut counts = walk::planes(primitives, prepared, goal);
+        counts += match policy::choose(self.walk, tree, primitives, &sort).way {
+            Way::BruteForce => brute_force::walk(tree, primitives, rays, first, prepared, goal),
+            way => {
+                let kernel =
+                    walk::Walk { tree, primitives, way, batch: rays, start: first, rays: prepared, lists, goal };
                 simd::dispatch(self.level, kernel)
             }
         };

@@ -8,15 +8,17 @@ mod single;
 mod slabs;
 mod stream;
 
+pub(super) use frustum::PACKET;
 pub(super) use prepared::PreparedRays;
 pub(crate) use prepared::sound;
 use prepared::{Packets, Records};
 pub(super) use stream::Lists;
 
+use super::Tree;
 use super::goal::Goal;
 use super::leaf::LeafKind;
+use super::policy::Way;
 use super::query::Counts;
-use super::{Tree, WalkKind};
 use crate::geometry::{Crossings, Primitives};
 use crate::ray::Rays;
 use simd::{Kernel, Simd};
@@ -25,7 +27,7 @@ use simd::{Kernel, Simd};
 pub(super) struct Walk<'a, G> {
     pub tree: &'a Tree,
     pub primitives: &'a Primitives,
-    pub kind: WalkKind,
+    pub way: Way,
     /// The rays as the caller gave them: those of this chunk begin at `start`.
     pub batch: Rays<'a>,
     pub start: usize,
@@ -42,7 +44,7 @@ impl<G: Goal> Kernel for Walk<'_, G> {
         let mut counts = Counts::default();
         let walked = self.packets(token, &mut counts);
         self.record(token, walked);
-        let together = if self.kind == WalkKind::Single { 1 } else { usize::MAX };
+        let together = if self.way == Way::OneByOne { 1 } else { usize::MAX };
         stream::walk(token, &mut self, together, &mut counts);
         counts
     }
@@ -52,14 +54,13 @@ impl<G: Goal> Walk<'_, G> {
     /// Walk what makes packets; returns them as bits. The rest needs records.
     #[inline(always)]
     fn packets<S: Simd>(&mut self, token: S, counts: &mut Counts) -> Packets {
-        // A packet offers each primitive once, and shapes are not its business.
-        if self.kind != WalkKind::Auto || G::EVERY_CROSSING || !self.primitives.shapes().is_empty() {
+        if self.way != Way::Packets {
             return Packets::default();
         }
         let mut walked = Packets::default();
         let mut stack = std::mem::take(&mut self.lists.stack);
-        for packet in 0..self.rays.len() / frustum::PACKET {
-            if frustum::walk(token, self, &mut stack, packet * frustum::PACKET, counts) {
+        for packet in 0..self.rays.len() / PACKET {
+            if frustum::walk(token, self, &mut stack, packet * PACKET, counts) {
                 walked.insert(packet);
             }
         }

@@ -24,7 +24,7 @@ use pyramid::Pyramid;
 use simd::Simd;
 
 /// Rays of a packet.
-pub(super) const PACKET: usize = 64;
+pub(in crate::tree) const PACKET: usize = 64;
 const LANES: usize = 16;
 const ROWS: usize = PACKET / LANES;
 

@@ -1,0 +1,190 @@
+//! Which walk suits which rays, and why: the one place where that is decided.
+//!
+//! | rays | walk | measured |
+//! | --- | --- | --- |
+//! | 64 with one origin and one main axis: of a camera, of a light | packet, bounded by a pyramid | decisions 2 and 4 |
+//! | others, many at a time | lists that go down the tree together, short ones in turns | `walk/stream.rs` |
+//! | one | by itself | |
+//!
+//! What is not known before is found out by the walks: whether 64 neighbours make a packet, whether it stays together (it
+//! has a budget, and a packet that exceeds it goes on as a list), and which lists have become short.
+
+use super::walk::PACKET;
+use super::{Tree, TreeKind, WalkKind};
+use crate::geometry::Primitives;
+use std::fmt;
+
+/// What is known about rays before they are walked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RaySort {
+    /// How many there are at a time.
+    pub count: usize,
+    /// Where they start.
+    pub origins: Origins,
+    /// Whether all their hits are wanted, not only the first, or that there is one.
+    pub every_hit: bool,
+}
+
+/// Where rays start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origins {
+    /// Neighbours start at one point: they come from a camera or from a light.
+    Shared,
+    /// Each starts somewhere else: they leave surfaces.
+    Own,
+    /// Not known.
+    Unknown,
+}
+
+/// A way through the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// There is no tree: each ray against each primitive.
+    BruteForce,
+    /// Packets of 64 rays, each bounded by a pyramid; what makes none, as lists.
+    Packets,
+    /// Lists of rays that go down the tree together, short ones in turns.
+    Lists,
+    /// One ray after the other.
+    OneByOne,
+}
+
+/// Why a way was chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// [`TreeKind::None`] was built.
+    NoTree,
+    /// The caller wants it so, by [`WalkKind`].
+    Asked,
+    /// There is only one ray.
+    OneRay,
+    /// Fewer rays than a packet has.
+    TooFew,
+    /// All hits are wanted, and a packet offers each primitive once.
+    EveryHit,
+    /// There are discs, boxes, cylinders or cones, which packets do not test.
+    OtherShapes,
+    /// Rays that start at different points fit no pyramid.
+    OwnOrigins,
+    /// Rays that start at one point fit a pyramid.
+    SharedOrigin,
+    /// Whether 64 rays fit a pyramid is seen when they are there.
+    Tried,
+}
+
+/// A way and the reason for it; its text is a sentence without a full stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// The way.
+    pub way: Way,
+    /// Why.
+    pub reason: Reason,
+}
+
+/// Choose the way of rays of a sort through `tree`, over `primitives`; `asked` is what the caller wants. No answer depends
+/// on it.
+pub fn choose(asked: WalkKind, tree: &Tree, primitives: &Primitives, rays: &RaySort) -> Choice {
+    let choice = |way, reason| Choice { way, reason };
+    if tree.kind() == TreeKind::None {
+        return choice(Way::BruteForce, Reason::NoTree);
+    }
+    match asked {
+        _ if rays.count == 1 => choice(Way::OneByOne, Reason::OneRay),
+        WalkKind::Single => choice(Way::OneByOne, Reason::Asked),
+        WalkKind::Stream => choice(Way::Lists, Reason::Asked),
+        WalkKind::Auto if rays.every_hit => choice(Way::Lists, Reason::EveryHit),
+        WalkKind::Auto if !primitives.shapes().is_empty() => choice(Way::Lists, Reason::OtherShapes),
+        WalkKind::Auto if rays.count < PACKET => choice(Way::Lists, Reason::TooFew),
+        WalkKind::Auto => match rays.origins {
+            Origins::Shared => choice(Way::Packets, Reason::SharedOrigin),
+            Origins::Unknown => choice(Way::Packets, Reason::Tried),
+            Origins::Own => choice(Way::Lists, Reason::OwnOrigins),
+        },
+    }
+}
+
+impl fmt::Display for Way {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::BruteForce => "against every primitive",
+            Self::Packets => "in packets of 64, the rest in lists",
+            Self::Lists => "in lists, short ones in turns",
+            Self::OneByOne => "one by one",
+        })
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NoTree => "there is no tree",
+            Self::Asked => "it was asked for",
+            Self::OneRay => "there is only one",
+            Self::TooFew => "there are fewer than 64",
+            Self::EveryHit => "all hits are wanted",
+            Self::OtherShapes => "there are other shapes than triangles, spheres and planes",
+            Self::OwnOrigins => "each starts at a point of its own",
+            Self::SharedOrigin => "neighbours start at one point",
+            Self::Tried => "64 at a time are a packet if they start at one point and run along one axis",
+        })
+    }
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, because {}", self.way, self.reason)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Disc, Shape, Sphere};
+    use crate::math::{Vec3d, Vec3f};
+
+    const MANY: RaySort = RaySort { count: 4096, origins: Origins::Unknown, every_hit: false };
+
+    fn spheres() -> Primitives {
+        let mut primitives = Primitives::new();
+        primitives.push_sphere(Sphere { center: Vec3f::ZERO, radius: 1.0 });
+        primitives
+    }
+
+    fn way(asked: WalkKind, rays: &RaySort) -> (Way, Reason) {
+        let primitives = spheres();
+        let tree = Tree::build(&primitives, &TreeKind::Fast.into());
+        let Choice { way, reason } = choose(asked, &tree, &primitives, rays);
+        (way, reason)
+    }
+
+    #[test]
+    fn rays_choose_their_walk() {
+        let auto = |rays| way(WalkKind::Auto, &rays);
+        assert_eq!(auto(MANY), (Way::Packets, Reason::Tried));
+        assert_eq!(auto(RaySort { origins: Origins::Shared, ..MANY }), (Way::Packets, Reason::SharedOrigin));
+        assert_eq!(auto(RaySort { origins: Origins::Own, ..MANY }), (Way::Lists, Reason::OwnOrigins));
+        assert_eq!(auto(RaySort { every_hit: true, ..MANY }), (Way::Lists, Reason::EveryHit));
+        assert_eq!(auto(RaySort { count: PACKET - 1, ..MANY }), (Way::Lists, Reason::TooFew));
+        assert_eq!(auto(RaySort { count: 1, ..MANY }), (Way::OneByOne, Reason::OneRay));
+    }
+
+    #[test]
+    fn callers_are_obeyed() {
+        let shared = RaySort { origins: Origins::Shared, ..MANY };
+        assert_eq!(way(WalkKind::Stream, &shared), (Way::Lists, Reason::Asked));
+        assert_eq!(way(WalkKind::Single, &shared), (Way::OneByOne, Reason::Asked));
+    }
+
+    #[test]
+    fn scenes_have_a_say() {
+        let none = Tree::build(&spheres(), &TreeKind::None.into());
+        assert_eq!(choose(WalkKind::Auto, &none, &spheres(), &MANY).way, Way::BruteForce);
+        let mut primitives = spheres();
+        let normal = Vec3d::new(0.0, 1.0, 0.0);
+        primitives.push_shape(Shape::Disc(Disc { center: Vec3d::ZERO, normal, radius: 1.0, inner_radius: 0.0 }));
+        let tree = Tree::build(&primitives, &TreeKind::Fast.into());
+        let choice = choose(WalkKind::Auto, &tree, &primitives, &MANY);
+        assert_eq!(choice, Choice { way: Way::Lists, reason: Reason::OtherShapes });
+        assert!(choice.to_string().starts_with("in lists, short ones in turns, because there are other shapes"));
+    }
+}
