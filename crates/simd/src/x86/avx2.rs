@@ -2,7 +2,6 @@
 
 use super::avx2_x8::F32x8;
 use super::left_pack;
-use super::transpose::{transpose_8x4, transpose_8x8};
 use super::x4::{F32x4, Sse};
 use crate::Simd;
 use crate::pair::Pair;
@@ -34,30 +33,7 @@ impl Simd for Avx2 {
         };
         Pair(F32x8::wrap(low, self), F32x8::wrap(high, self))
     }
-    #[inline(always)]
-    fn transpose(self, rows: [F32x8; 8]) -> [F32x8; 8] {
-        let [a, b, c, d, e, f, g, h] = rows;
-        // SAFETY: the token exists, so the CPU has its features.
-        let [a, b, c, d, e, f, g, h] = unsafe { transpose_8x8([a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0]) };
-        let wrap = F32x8::wrap;
-        [
-            wrap(a, self),
-            wrap(b, self),
-            wrap(c, self),
-            wrap(d, self),
-            wrap(e, self),
-            wrap(f, self),
-            wrap(g, self),
-            wrap(h, self),
-        ]
-    }
-    #[inline(always)]
-    fn columns(self, rows: [F32x4<Self>; 8]) -> [F32x8; 4] {
-        let [a, b, c, d, e, f, g, h] = rows;
-        // SAFETY: the token exists, so the CPU has its features.
-        let [x, y, z, w] = unsafe { transpose_8x4([a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0]) };
-        [F32x8::wrap(x, self), F32x8::wrap(y, self), F32x8::wrap(z, self), F32x8::wrap(w, self)]
-    }
+    transposes!();
     #[inline(always)]
     fn append_matching(self, masks: &[u16], ids: &[u16], bit: u16, out: &mut [u16]) -> usize {
         left_pack::append_matching(self, masks, ids, bit, out)
@@ -76,14 +52,4 @@ impl Simd for Avx2 {
     }
 }
 
-impl Sse for Avx2 {
-    #[inline(always)]
-    fn fma(self, a: __m128, b: __m128, c: __m128) -> __m128 {
-        // SAFETY: the token exists, so the CPU has its features.
-        unsafe { _mm_fmadd_ps(a, b, c) }
-    }
-    #[inline(always)]
-    fn mul_add_fast(self, a: __m128, b: __m128, c: __m128) -> __m128 {
-        self.fma(a, b, c)
-    }
-}
+sse_with_fma!(Avx2);

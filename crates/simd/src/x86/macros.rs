@@ -184,3 +184,52 @@ macro_rules! hardware_gather {
         }
     };
 }
+
+/// The transpositions of [`Simd`](crate::Simd), for tokens whose `F32x8` is one register.
+macro_rules! transposes {
+    () => {
+        #[inline(always)]
+        fn transpose(self, rows: [F32x8; 8]) -> [F32x8; 8] {
+            let [a, b, c, d, e, f, g, h] = rows;
+            let rows = [a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0];
+            // SAFETY: the token exists, so the CPU has its features.
+            let [a, b, c, d, e, f, g, h] = unsafe { super::transpose::transpose_8x8(rows) };
+            let wrap = F32x8::wrap;
+            [
+                wrap(a, self),
+                wrap(b, self),
+                wrap(c, self),
+                wrap(d, self),
+                wrap(e, self),
+                wrap(f, self),
+                wrap(g, self),
+                wrap(h, self),
+            ]
+        }
+        #[inline(always)]
+        fn columns(self, rows: [F32x4<Self>; 8]) -> [F32x8; 4] {
+            let [a, b, c, d, e, f, g, h] = rows;
+            let rows = [a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0];
+            // SAFETY: the token exists, so the CPU has its features.
+            let [x, y, z, w] = unsafe { super::transpose::transpose_8x4(rows) };
+            [F32x8::wrap(x, self), F32x8::wrap(y, self), F32x8::wrap(z, self), F32x8::wrap(w, self)]
+        }
+    };
+}
+
+/// Implements [`Sse`](super::x4::Sse) for a token that has fused multiply-add.
+macro_rules! sse_with_fma {
+    ($token:ty) => {
+        impl Sse for $token {
+            #[inline(always)]
+            fn fma(self, a: __m128, b: __m128, c: __m128) -> __m128 {
+                // SAFETY: the token exists, so the CPU has its features.
+                unsafe { _mm_fmadd_ps(a, b, c) }
+            }
+            #[inline(always)]
+            fn mul_add_fast(self, a: __m128, b: __m128, c: __m128) -> __m128 {
+                self.fma(a, b, c)
+            }
+        }
+    };
+}

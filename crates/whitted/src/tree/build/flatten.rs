@@ -304,30 +304,24 @@ impl Source<'_> {
 
     fn write_leaf(&self, kind: LeafKind, ids: &[u32], room: &mut Room<'_>) -> Child {
         let count = ids.len().div_ceil(BLOCK);
-        let chunks = ids.chunks(BLOCK);
+        let (primitives, scale) = (self.primitives, self.scale);
         let first = match kind {
             LeafKind::Triangles => {
-                let Run { items, first } = room.triangles.take(count);
-                items
-                    .iter_mut()
-                    .zip(chunks)
-                    .for_each(|(b, ids)| *b = TriangleBlock::new(self.primitives, self.scale, ids));
-                first
+                write_blocks(room.triangles.take(count), ids, |ids| TriangleBlock::new(primitives, scale, ids))
             }
             LeafKind::Spheres => {
-                let Run { items, first } = room.spheres.take(count);
-                items
-                    .iter_mut()
-                    .zip(chunks)
-                    .for_each(|(b, ids)| *b = SphereBlock::new(self.primitives, self.scale, ids));
-                first
+                write_blocks(room.spheres.take(count), ids, |ids| SphereBlock::new(primitives, scale, ids))
             }
-            LeafKind::Shapes => {
-                let Run { items, first } = room.shapes.take(count);
-                items.iter_mut().zip(chunks).for_each(|(b, ids)| *b = ShapeBlock::new(ids));
-                first
-            }
+            LeafKind::Shapes => write_blocks(room.shapes.take(count), ids, ShapeBlock::new),
         };
         Child::leaf(kind, first, count)
     }
+}
+
+/// Make a block of every eight primitives; returns the number of the first block.
+fn write_blocks<B>(run: Run<'_, B>, ids: &[u32], block: impl Fn(&[u32]) -> B) -> usize {
+    for (slot, ids) in run.items.iter_mut().zip(ids.chunks(BLOCK)) {
+        *slot = block(ids);
+    }
+    run.first
 }
