@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use whitted::math::{Vec3d, Vec3f};
-use whitted::render::{Cancel, Execution, Silent, render};
+use whitted::render::{Aov, Cancel, Execution, Silent, aovs, render};
 use whitted::scene::{Camera, Light, LightKind, NamedCamera, NamedMaterial, Prepared, Scene, Settings};
 use whitted::shading::{Material, Texture};
 use whitted::tree::BuildOptions;
@@ -348,4 +348,72 @@ fn at_rest_nothing_asks_for_attention() {
     std::thread::sleep(Duration::from_millis(300));
     assert_eq!(session.picture().version, version);
     assert_eq!(session.tick(Instant::now()), None, "no tick is due");
+}
+
+#[test]
+fn every_view_is_the_one_that_a_render_writes() {
+    let desk = Desk::new(scene());
+    let mut session = session(&desk);
+    rest(&mut session);
+    let frame = session.finished().unwrap();
+    for (name, aov) in Aov::ALL {
+        session.act(Action::NextView);
+        assert_eq!(session.view(), Some(aov));
+        rest(&mut session);
+        let now = session.finished().unwrap();
+        assert!(std::ptr::eq(&*frame.frame, &*now.frame), "{name}: the light was traced again");
+        if aov != Aov::Time {
+            let (prepared, settings) = (session.prepared().unwrap(), session.settings());
+            let expected =
+                aovs(&[aov], &frame.frame, prepared, settings, &Execution::default(), &|| 0, &Cancel::new()).unwrap();
+            assert!(shown(&session) == expected[0].rgb8, "{name}");
+        }
+    }
+    session.act(Action::NextView);
+    rest(&mut session);
+    assert_eq!(session.view(), None);
+    assert_is_exact(&session, &scene());
+}
+
+#[test]
+fn a_click_tells_the_rays_of_a_pixel() {
+    let desk = Desk::new(scene());
+    let mut session = session(&desk);
+    rest(&mut session);
+    drag(&mut session, Button::Left, [0.0, 0.0]);
+    serve_until(&mut session, "the rays", |session| session.inspection().is_some_and(|about| about.tree.is_some()));
+    let about = session.inspection().unwrap();
+    let tree = about.tree.as_ref().unwrap();
+    assert_eq!((about.pixel, tree.samples.len()), ([80, 60], 1));
+    assert!(!tree.samples[0].rays.is_empty());
+    session.act(Action::Close);
+    assert!(session.inspection().is_none() && session.take_effects().is_empty(), "the first thing to close");
+}
+
+#[test]
+fn what_is_changed_by_hand_is_seen_at_once_and_can_be_written_back() {
+    let desk = Desk::new(scene());
+    let mut session = session(&desk);
+    rest(&mut session);
+    assert!(!session.is_changed());
+    let mut look = session.look().unwrap().clone();
+    look.materials[0].material.diffuse = 0.25;
+    look.lights[0].color = Vec3f::new(0.5, 0.6, 0.7);
+    session.set_look(look);
+    rest(&mut session);
+    let mut changed = scene();
+    changed.materials[0].material.diffuse = 0.25;
+    changed.lights[0].color = Vec3f::new(0.5, 0.6, 0.7);
+    assert!(session.is_changed());
+    assert_is_exact(&session, &changed);
+    session.write_back();
+    serve_until(&mut session, "the file", |session| session.scene().is_some_and(|s| s.lights == changed.lights));
+    assert!(!session.is_changed());
+    rest(&mut session);
+    assert_is_exact(&session, &changed);
+    // What is impossible is refused.
+    let mut impossible = session.look().unwrap().clone();
+    impossible.materials[0].material.ior = -1.0;
+    session.set_look(impossible);
+    assert_eq!(session.look().unwrap().materials, changed.materials);
 }

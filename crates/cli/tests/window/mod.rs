@@ -194,7 +194,9 @@ impl<'a> Viewer<'a> {
 
     /// The lines that were printed, from this one on.
     pub(crate) fn printed_block(&self, first: &str) -> String {
-        wait_for("the camera on standard output", || self.printed.lock().unwrap().contains("vfov"));
+        wait_for("the camera on standard output", || self.printed.lock().unwrap().contains("look_at"));
+        // It is printed at once, but need not arrive at once.
+        sleep(Duration::from_millis(200));
         let printed = self.printed.lock().unwrap();
         printed[printed.find(first).unwrap()..].trim_end().to_owned()
     }

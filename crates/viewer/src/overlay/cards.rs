@@ -95,7 +95,11 @@ pub(super) fn legend(context: &Context, session: &Session) {
 
 /// A number in a few digits.
 fn amount(value: f32) -> String {
-    if value.abs() >= 1000.0 { super::status::short(f64::from(value)) } else { format!("{value:.3}") }
+    match value {
+        value if value.abs() >= 1000.0 => super::status::short(f64::from(value)),
+        value if value.fract() == 0.0 => format!("{value:.0}"),
+        value => format!("{value:.3}"),
+    }
 }
 
 /// All colours of a view's scale, from the first to the last.

@@ -1,15 +1,14 @@
 //! The pixel inspector: what a pixel shows, its rays as a tree, and the same rays drawn over the picture.
 
+use super::projection::View;
 use super::status::short;
 use super::theme::{ACCENT, FAINT, card};
 use crate::session::{Inspection, Session};
-use egui::{
-    Align2, CollapsingHeader, Color32, Context, Grid, Id, LayerId, Order, Pos2, RichText, ScrollArea, Stroke, Ui,
-};
-use egui::{Window, pos2, vec2};
+use egui::{Align2, CollapsingHeader, Color32, Context, Grid, Id, LayerId, Order, Painter, RichText, ScrollArea};
+use egui::{Stroke, Ui, Window, vec2};
 use whitted::math::{Vec3d, Vec3f};
 use whitted::render::{RayEnd, RayKind, SampleTree, SurfaceHit, TracedRay};
-use whitted::scene::{Camera, Scene};
+use whitted::scene::{Geometry, Scene};
 
 /// Width of the inspector in units of layout.
 const WIDTH: f32 = 330.0;
@@ -17,36 +16,56 @@ const WIDTH: f32 = 330.0;
 /// Rays that hit nothing are drawn as long as this share of the distance that is looked at.
 const ENDLESS: f64 = 2.0;
 
-/// Nearer to the eye than this share of the distance that is looked at nothing is drawn.
-const NEAR: f64 = 1e-4;
-
 /// More rays than this are not listed: a sample of glass in glass has thousands.
 const MOST: usize = 400;
 
-/// Draw the rays and the card about the pixel.
-pub(super) fn show(context: &Context, session: &mut Session) {
-    let Some(inspection) = session.inspection().cloned() else { return };
-    let Some(sample) = inspection.tree.as_ref().and_then(|tree| tree.samples.first()) else { return };
-    draw_rays(context, session.camera(), sample, inspection.chosen);
-    let mut chosen = None;
-    let mut is_open = true;
-    let window =
-        Window::new(format!("pixel {}, {}", inspection.pixel[0], inspection.pixel[1])).id(Id::new("inspector"));
-    let window = window.frame(card()).anchor(Align2::LEFT_TOP, vec2(10.0, 10.0)).resizable(false).collapsible(false);
-    window.open(&mut is_open).show(context, |ui| {
-        ui.set_width(WIDTH);
-        if let Some(scene) = session.scene() {
-            facts(ui, scene, &inspection, sample);
-            ui.separator();
-            let height = (context.content_rect().height() - 280.0).max(60.0);
-            ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-                chosen = rays(ui, scene, sample);
-            });
+/// More boxes than this are not drawn: they would hide the picture.
+const MOST_BOXES: usize = 96;
+
+/// What is chosen in the inspector.
+#[derive(Debug, Default)]
+pub(super) struct Inspector {
+    /// Draw the boxes of the tree that the chosen ray enters.
+    boxes: bool,
+}
+
+impl Inspector {
+    /// Draw the rays and the card about the pixel.
+    pub(super) fn show(&mut self, context: &Context, session: &mut Session) {
+        let Some(inspection) = session.inspection().cloned() else { return };
+        let Some(sample) = inspection.tree.as_ref().and_then(|tree| tree.samples.first()) else { return };
+        let screen = context.content_rect();
+        let view = View::new(session.camera(), [screen.width(), screen.height()]);
+        let painter = context.layer_painter(LayerId::new(Order::Background, Id::new("rays")));
+        if self.boxes
+            && let Some(prepared) = session.prepared()
+        {
+            let chosen = inspection.chosen.and_then(|number| sample.rays.get(number)).or(sample.rays.first());
+            chosen.into_iter().for_each(|ray| draw_boxes(&painter, &view, prepared.geometry(), ray));
         }
-    });
-    match is_open {
-        true => session.choose_ray(chosen),
-        false => session.forget_pixel(),
+        draw_rays(&painter, &view, sample, inspection.chosen);
+        let mut chosen = None;
+        let mut is_open = true;
+        let window =
+            Window::new(format!("pixel {}, {}", inspection.pixel[0], inspection.pixel[1])).id(Id::new("inspector"));
+        let window =
+            window.frame(card()).anchor(Align2::LEFT_TOP, vec2(10.0, 10.0)).resizable(false).collapsible(false);
+        window.open(&mut is_open).show(context, |ui| {
+            ui.set_width(WIDTH);
+            if let Some(scene) = session.scene() {
+                facts(ui, scene, &inspection, sample);
+                ui.checkbox(&mut self.boxes, "boxes of the tree on the ray's way");
+                ui.separator();
+                let height = (context.content_rect().height() - 280.0).max(60.0);
+                ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+                    chosen = rays(ui, scene, sample);
+                });
+            }
+        });
+        match is_open {
+            true => session.choose_ray(chosen),
+            false => session.forget_pixel(),
+        }
     }
 }
 
@@ -159,11 +178,34 @@ fn tint(ray: &TracedRay) -> Color32 {
     if ray.end.is_traced() { color } else { FAINT }
 }
 
-/// Draw all rays of a sample where they are in the picture of `camera`.
-fn draw_rays(context: &Context, camera: &Camera, sample: &SampleTree, chosen: Option<usize>) {
-    let painter = context.layer_painter(LayerId::new(Order::Background, Id::new("rays")));
-    let screen = context.content_rect();
-    let view = View::new(camera, [screen.width(), screen.height()]);
+/// Draw the boxes of the tree that a ray enters before its end: leaves bright, what is around them faint.
+fn draw_boxes(painter: &Painter, view: &View, geometry: &Geometry, ray: &TracedRay) {
+    if !ray.end.is_traced() {
+        return;
+    }
+    let boxes = geometry.boxes_entered(ray.origin, ray.direction, ray.length);
+    for entered in boxes.iter().take(MOST_BOXES) {
+        let alpha = if entered.primitives.is_some() { 200 } else { 70 };
+        let stroke = Stroke::new(1.0, Color32::from_rgba_unmultiplied(120, 255, 190, alpha));
+        for [from, to] in edges(entered.lo, entered.hi) {
+            view.segment(from, to).into_iter().for_each(|ends| _ = painter.line_segment(ends, stroke));
+        }
+    }
+}
+
+/// The twelve edges of a box.
+fn edges(lo: Vec3d, hi: Vec3d) -> impl Iterator<Item = [Vec3d; 2]> {
+    let corner = move |bits: usize| {
+        let pick = |axis: usize| if bits >> axis & 1 == 1 { hi[axis] } else { lo[axis] };
+        Vec3d::new(pick(0), pick(1), pick(2))
+    };
+    (0..8).flat_map(move |from| {
+        (0..3).filter(move |axis| from >> axis & 1 == 0).map(move |axis| [corner(from), corner(from | 1 << axis)])
+    })
+}
+
+/// Draw all rays of a sample where they are in the picture.
+fn draw_rays(painter: &Painter, view: &View, sample: &SampleTree, chosen: Option<usize>) {
     for (number, ray) in sample.rays.iter().enumerate().take(MOST).filter(|(_, ray)| ray.end.is_traced()) {
         let length = if ray.length.is_finite() { ray.length } else { view.distance * ENDLESS };
         let Some(ends) = view.segment(ray.origin, ray.origin + ray.direction * length) else { continue };
@@ -186,65 +228,15 @@ fn draw_rays(context: &Context, camera: &Camera, sample: &SampleTree, chosen: Op
     }
 }
 
-/// From the scene to the picture.
-struct View {
-    camera: Camera,
-    axes: [Vec3d; 3],
-    size: [f32; 2],
-    distance: f64,
-}
-
-impl View {
-    fn new(camera: &Camera, size: [f32; 2]) -> Self {
-        Self { camera: *camera, axes: camera.axes(), size, distance: (camera.look_at - camera.eye).length() }
-    }
-
-    /// Right, up and forward from the eye.
-    fn seen(&self, point: Vec3d) -> Vec3d {
-        let d = point - self.camera.eye;
-        Vec3d::new(d.dot(self.axes[0]), d.dot(self.axes[1]), d.dot(self.axes[2]))
-    }
-
-    /// Where the part of a segment that lies before the eye is in the picture; `None` if none does.
-    fn segment(&self, from: Vec3d, to: Vec3d) -> Option<[Pos2; 2]> {
-        let near = NEAR * self.distance;
-        let [a, b] = [self.seen(from), self.seen(to)];
-        let cut = |a: Vec3d, b: Vec3d| if a.z < near { a + (b - a) * ((near - a.z) / (b.z - a.z)) } else { a };
-        (a.z >= near || b.z >= near).then(|| [self.place(cut(a, b)), self.place(cut(b, a))])
-    }
-
-    fn place(&self, seen: Vec3d) -> Pos2 {
-        // Far outside the window it does not matter where.
-        const FARTHEST: f64 = 1e5;
-        let scale = f64::from(self.size[1]) * 0.5 / (self.camera.half_height() * seen.z);
-        let [x, y] = [seen.x * scale, -seen.y * scale].map(|a| a.clamp(-FARTHEST, FARTHEST) as f32);
-        pos2(self.size[0] * 0.5 + x, self.size[1] * 0.5 + y)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn points_are_drawn_where_their_rays_pass() {
-        let camera = Camera { eye: Vec3d::new(1.0, 2.0, 5.0), vfov: 50.0, ..Camera::default() };
-        let rays = whitted::scene::CameraRays::new(&camera, [400, 300], whitted::scene::Sampling::Centers);
-        let view = View::new(&camera, [400.0, 300.0]);
-        for place in [[10.0, 20.0], [200.0, 150.0], [399.0, 1.0]] {
-            let direction = rays.ray(place[0], place[1]).direction.to_f64();
-            let point = camera.eye + direction * 7.0;
-            let [from, to] = view.segment(point, point).unwrap();
-            assert!((from - pos2(place[0], place[1])).length() < 0.01 && from == to, "{from:?}");
-        }
-    }
-
-    #[test]
-    fn what_lies_behind_the_eye_is_cut_off() {
-        let view = View::new(&Camera::default(), [100.0, 100.0]);
-        let behind = Vec3d::new(0.0, 1.0, 9.0);
-        assert!(view.segment(behind, behind).is_none());
-        let [from, to] = view.segment(behind, Vec3d::ZERO).unwrap();
-        assert!(from.y < 0.0 && to == pos2(50.0, 50.0), "{from:?} {to:?}");
+    fn a_box_has_twelve_edges() {
+        let edges: Vec<[Vec3d; 2]> = edges(Vec3d::ZERO, Vec3d::new(1.0, 2.0, 4.0)).collect();
+        assert_eq!(edges.len(), 12);
+        let total: f64 = edges.iter().map(|[from, to]| (*to - *from).length()).sum();
+        assert_eq!(total, 28.0, "four of each length");
     }
 }

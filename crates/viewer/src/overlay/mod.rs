@@ -4,6 +4,7 @@ mod cards;
 mod events;
 mod inspector;
 mod panel;
+mod projection;
 mod status;
 mod theme;
 
@@ -25,7 +26,14 @@ pub(crate) struct Overlay {
     scale: f32,
     /// When it wants to be drawn again even if nothing happens.
     due: Option<Instant>,
+    panels: Panels,
+}
+
+/// The panels that remember something.
+#[derive(Debug, Default)]
+struct Panels {
     panel: panel::Panel,
+    inspector: inspector::Inspector,
 }
 
 impl Overlay {
@@ -41,7 +49,7 @@ impl Overlay {
             size: [1, 1],
             scale,
             due: None,
-            panel: panel::Panel::default(),
+            panels: Panels::default(),
         }
     }
 
@@ -77,8 +85,8 @@ impl Overlay {
         self.size = size;
         let now = Instant::now();
         let raw = self.raw_input(now);
-        let panel = &mut self.panel;
-        let output = self.context.run_ui(raw, |ui| show(ui, session, panel, now));
+        let panels = &mut self.panels;
+        let output = self.context.run_ui(raw, |ui| show(ui, session, panels, now));
         let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |view| view.repaint_delay);
         self.due = now.checked_add(delay);
         let jobs = self.context.tessellate(output.shapes, output.pixels_per_point);
@@ -106,7 +114,7 @@ impl Overlay {
 }
 
 /// All that is shown at the moment.
-fn show(ui: &mut egui::Ui, session: &mut Session, panel: &mut panel::Panel, now: Instant) {
+fn show(ui: &mut egui::Ui, session: &mut Session, panels: &mut Panels, now: Instant) {
     let context = ui.ctx().clone();
     // What is wrong is shown whatever else is.
     cards::trouble(&context, session);
@@ -116,9 +124,9 @@ fn show(ui: &mut egui::Ui, session: &mut Session, panel: &mut panel::Panel, now:
     status::show(&context, session, now);
     cards::legend(&context, session);
     cards::notes(&context, session);
-    inspector::show(&context, session);
+    panels.inspector.show(&context, session);
     if session.shown().panel {
-        panel.show(&context, session);
+        panels.panel.show(&context, session);
     }
     cards::opening(&context, session, now);
     if session.shown().help {
