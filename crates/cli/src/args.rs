@@ -1,5 +1,8 @@
 //! The command line: every option, and the reading of its value. What the options mean for a render is in `render.rs`.
 
+mod paper;
+
+pub(crate) use self::paper::PaperArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use formats::rays::{HitFormat, RayFormat};
 use std::path::PathBuf;
@@ -48,6 +51,9 @@ pub(crate) enum Command {
     /// Find what each ray of a table hits first
     #[command(after_help = TABLES)]
     Trace(TraceArguments),
+    /// Repeat the experiments of the paper that Whitted follows, and report them beside the paper's numbers
+    #[command(after_help = paper::HELP)]
+    Paper(PaperArguments),
     /// Look around in a scene, interactively, while its file is edited
     #[command(after_help = EXIT_CODES)]
     View(Box<ViewArguments>),

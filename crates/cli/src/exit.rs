@@ -12,8 +12,12 @@ pub(crate) enum Failure {
     Usage(String),
     /// The scene is wrong; the text says where.
     Scene(String),
-    /// The user stopped it.
+    /// The user stopped it, and nothing was written.
     Interrupted,
+    /// The user stopped it; the text says what there is.
+    InterruptedAfter(String),
+    /// What was computed is not what it must be.
+    Wrong(String),
 }
 
 /// What a shell reports for a process that SIGINT (2) ended: 128 + 2.
@@ -22,10 +26,10 @@ pub(crate) const INTERRUPTED: u8 = 130;
 impl Failure {
     fn code(&self) -> u8 {
         match self {
-            Self::Io(_) => 1,
+            Self::Io(_) | Self::Wrong(_) => 1,
             Self::Usage(_) => 2,
             Self::Scene(_) => 3,
-            Self::Interrupted => INTERRUPTED,
+            Self::Interrupted | Self::InterruptedAfter(_) => INTERRUPTED,
         }
     }
 }
@@ -33,9 +37,10 @@ impl Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Io(text) | Self::Scene(text) => write!(f, "error: {text}"),
+            Self::Io(text) | Self::Scene(text) | Self::Wrong(text) => write!(f, "error: {text}"),
             Self::Usage(text) => write!(f, "error: {text}\n\nFor more information, try '--help'."),
             Self::Interrupted => write!(f, "interrupted: nothing was written"),
+            Self::InterruptedAfter(text) => write!(f, "interrupted: {text}"),
         }
     }
 }

@@ -1,4 +1,5 @@
-//! The command `whitted`: renders scenes, explains pixels, checks scenes, and traces rays for other programs.
+//! The command `whitted`: renders scenes, explains pixels, checks scenes, traces rays for other programs, and repeats the
+//! experiments of the paper that it follows.
 //!
 //! It knows arguments, files' final names, progress and reports. What a scene means is `formats`' to say, and how a
 //! picture is computed the library's.
@@ -17,6 +18,7 @@ mod explain;
 mod interrupt;
 mod load;
 mod output;
+mod paper;
 mod progress;
 mod render;
 mod report;
@@ -40,5 +42,6 @@ fn main() -> ExitCode {
         args::Command::Explain(arguments) => explain::run(&arguments),
         args::Command::Trace(arguments) => trace::run(&arguments),
         args::Command::View(arguments) => view::run(&arguments),
+        args::Command::Paper(arguments) => paper::run(&arguments),
     })
 }

@@ -41,6 +41,33 @@ fn bar() -> ProgressBar {
     ProgressBar::with_draw_target(Some(1), draw).with_style(style)
 }
 
+impl Display {
+    /// As [`new`](Self::new), for work of many steps that have names.
+    pub(crate) fn for_steps(quiet: bool) -> Self {
+        let display = Self::new(quiet);
+        if let Self::Bar(bar) = &display {
+            let style = ProgressStyle::with_template("{bar:24} {percent:>3} %  {elapsed}  {wide_msg}");
+            bar.set_style(style.expect("the template is well-formed"));
+        }
+        display
+    }
+}
+
+impl paper::Watch for Display {
+    fn at(&self, part: f64, what: &str) {
+        const STEPS: f64 = 1000.0;
+        match self {
+            Self::Quiet => {}
+            Self::Lines(ticker) => line_if_due(ticker, || format!("{:3.0} % {what}", 100.0 * part)),
+            Self::Bar(bar) => {
+                bar.set_message(what.to_owned());
+                bar.set_length(STEPS as u64);
+                bar.set_position((STEPS * part) as u64);
+            }
+        }
+    }
+}
+
 /// How far a table of rays is.
 pub(crate) struct Done {
     pub(crate) rays: u64,

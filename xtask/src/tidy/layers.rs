@@ -14,8 +14,9 @@ const CRATES: &[(&str, &[&str])] = &[
     ("simd", &[]),
     ("whitted", &["simd"]),
     ("formats", &["simd", "whitted"]),
+    ("paper", &["simd", "whitted", "formats"]),
     ("viewer", &["simd", "whitted"]),
-    ("cli", &["simd", "whitted", "formats", "viewer"]),
+    ("cli", &["simd", "whitted", "formats", "paper", "viewer"]),
 ];
 
 /// Checks the arrows inside the library; tests may use any layer.
