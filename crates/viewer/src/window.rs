@@ -196,7 +196,12 @@ impl Open {
         match event {
             WindowEvent::Resized(size) => self.app.resize((*size).into()),
             WindowEvent::ScaleFactorChanged { scale_factor, .. } => self.app.set_scale(*scale_factor as f32),
-            WindowEvent::KeyboardInput { event, .. } => self.key(event),
+            // A key that was down when the window got the focus was pressed for another window, or comes again.
+            WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
+                if !is_synthetic || !event.state.is_pressed() {
+                    self.key(event);
+                }
+            }
             other => {
                 if let Some(input) = translated(other) {
                     self.app.input(&input);

@@ -56,7 +56,7 @@ impl Desk {
         let number = 100 + std::process::id() % 400 + 500 * COUNT.fetch_add(1, Ordering::Relaxed);
         let display = format!(":{number}");
         let mut server = Command::new("Xvfb");
-        server.args([&display, "-screen", "0", "800x600x24", "-nolisten", "tcp"]);
+        server.args([&display, "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"]);
         let server = server.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("a display");
         let desk = Self { server, display };
         wait_for("the display", || desk.command("xdotool", &["getdisplaygeometry"]).status().unwrap().success());
