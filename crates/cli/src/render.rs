@@ -208,7 +208,7 @@ fn tell_walks(prepared: &Prepared, execution: &Execution) {
     };
     let geometry = prepared.geometry();
     for (rays, origins) in SORTS {
-        let sort = RaySort { count, origins, every_hit: false };
+        let sort = RaySort { count, origins };
         eprintln!("{rays}: {}", policy::choose(execution.walk, geometry.tree(), geometry.primitives(), &sort));
     }
 }

@@ -161,7 +161,7 @@ impl Shapes {
         let scene = RayScene::from_primitives(primitives, &options);
         if arguments.verbosity.verbose {
             eprintln!("{name}: {} primitives, {} of them degenerate", scene.len(), scene.dropped());
-            let sort = RaySort { count: PIECE, origins: Origins::Unknown, every_hit: false };
+            let sort = RaySort { count: PIECE, origins: Origins::Unknown };
             eprintln!("rays go through the tree {}", scene.choice(&sort));
         }
         Ok(Self { scene, space })

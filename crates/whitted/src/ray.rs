@@ -148,11 +148,6 @@ impl RayBatch {
         self.rows().into_iter().for_each(|row| row.resize(len, 0.0));
     }
 
-    /// Overwrite ray `to` with ray `from`.
-    pub fn copy_within(&mut self, from: usize, to: usize) {
-        self.rows().into_iter().for_each(|row| row[to] = row[from]);
-    }
-
     /// Append one ray.
     #[inline(always)]
     pub fn push(&mut self, ray: &Ray) {

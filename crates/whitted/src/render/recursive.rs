@@ -10,7 +10,7 @@ use super::progress::Cancelled;
 use super::queue::TaggedRays;
 use super::recorder::{Recorder, Unrecorded};
 use super::samples::Samples;
-use super::shadow::{BEFORE_ALL, MAX_FILTERS, opaque_primitives};
+use super::shadow::{filtered, opaque_primitives};
 use super::source::{Alone, Production, Source};
 use super::vertex::Vertex;
 use super::wavefront::camera_tag;
@@ -152,22 +152,11 @@ impl<H: Source, R: Recorder> Run<'_, H, R> {
         let outcome = self.source.occluded(&ray, opaque_primitives(self.context), statistics);
         let light = match outcome {
             Occlusion::Clear => values(sent.light),
-            Occlusion::Filtered => self.filtered(&ray, values(sent.light)),
+            Occlusion::Filtered => filtered(self.context, values(sent.light), |after| {
+                self.source.next_hit(&ray, after, &mut self.samples.statistics)
+            }),
             Occlusion::Blocked => Vec3f::ZERO,
         };
         (outcome, light)
-    }
-
-    /// `light` after all surfaces on the way of a ray.
-    fn filtered(&mut self, ray: &Ray, mut light: Vec3f) -> Vec3f {
-        let mut after = BEFORE_ALL;
-        for _ in 0..MAX_FILTERS {
-            let hit = self.source.next_hit(ray, &mut after, &mut self.samples.statistics);
-            if !hit.is_hit() {
-                return light;
-            }
-            light = light.times(self.context.filter(hit.primitive));
-        }
-        Vec3f::ZERO
     }
 }

@@ -6,16 +6,17 @@ use super::packing::Packing;
 use super::rows::{BLOCK, Rows};
 use super::samples::Samples;
 use crate::math::Vec3f;
-use crate::ray::{HitBatch, Ray, RayBatch, Rays};
+use crate::ray::{Hit, HitBatch, Ray, RayBatch, Rays};
 use crate::scene::Shadows;
-use crate::tree::{BitSet, Occlusion, Scratch};
+use crate::tree::{BitSet, CrossingLists, Occlusion, Scratch};
 use simd::{F32Lanes, Kernel, Level, Simd, U32Lanes};
+use std::ops::Range;
 
 /// Light passes at most this many surfaces; what would pass more is lost. Bounds the work of a shadow ray.
-pub(super) const MAX_FILTERS: usize = 256;
+const MAX_FILTERS: usize = 256;
 
 /// Where the walk over all hits of a ray begins.
-pub(super) const BEFORE_ALL: (f32, u32) = (f32::NEG_INFINITY, 0);
+const BEFORE_ALL: (f32, u32) = (f32::NEG_INFINITY, 0);
 
 /// The primitives that let no light pass; `None` if none does.
 pub(super) fn opaque_primitives<'a>(context: &Context<'a>) -> Option<&'a BitSet> {
@@ -132,56 +133,72 @@ impl Kernel for Permute<'_> {
     }
 }
 
-/// Shadow rays that meet only transparent surfaces: each round finds the next surface of every ray that is left.
+/// Shadow rays that meet only transparent surfaces.
 #[derive(Debug, Default)]
 struct FilteredBatch {
     rays: RayBatch,
     gains: Vec<(u32, Vec3f)>,
-    after: Vec<(f32, u32)>,
-    hits: HitBatch,
+    crossings: CrossingLists,
 }
+
+/// Rays whose crossings are found together.
+const FILTERED: usize = 4096;
 
 impl FilteredBatch {
     fn push(&mut self, ray: &Ray, sample: u32, light: Vec3f) {
         self.rays.push(ray);
         self.gains.push((sample, light));
-        self.after.push(BEFORE_ALL);
     }
 
+    /// Deliver what of the light arrives, and forget the rays.
     fn resolve(&mut self, context: &Context, scratch: &mut Scratch, samples: &mut Samples) {
-        for _ in 0..MAX_FILTERS {
-            if self.gains.is_empty() {
-                break;
+        for start in (0..self.gains.len()).step_by(FILTERED) {
+            let chunk = start..self.gains.len().min(start + FILTERED);
+            let (rays, room) = (Rays::from(&self.rays), FILTERED * MAX_FILTERS);
+            match context.query.crossings(rays, chunk.clone(), None, room, &mut self.crossings, scratch) {
+                Some(counts) => samples.statistics += counts,
+                None => {
+                    self.one_by_one(chunk, context, scratch, samples);
+                    continue;
+                }
             }
-            let counts = context.query.next_hit(&self.rays, &mut self.after, &mut self.hits, scratch);
-            samples.statistics += counts;
-            self.filter(context, samples);
+            for index in chunk.clone() {
+                let crossings = self.crossings.of(index - chunk.start);
+                if crossings.len() < MAX_FILTERS {
+                    let (sample, light) = self.gains[index];
+                    samples
+                        .add(sample, crossings.iter().fold(light, |light, c| light.times(context.filter(c.primitive))));
+                }
+            }
         }
-        self.keep_first(0);
+        self.rays.truncate(0);
+        self.gains.clear();
     }
 
-    /// Reduce the light of every ray by the surface that it met; deliver that of rays which met nothing more, and keep
-    /// the others.
-    fn filter(&mut self, context: &Context, samples: &mut Samples) {
-        let mut kept = 0;
-        for index in 0..self.gains.len() {
-            let (sample, light) = self.gains[index];
-            let hit = self.hits.get(index);
-            if !hit.is_hit() {
-                samples.add(sample, light);
-                continue;
-            }
-            self.gains[kept] = (sample, light.times(context.filter(hit.primitive)));
-            self.after[kept] = self.after[index];
-            self.rays.copy_within(index, kept);
-            kept += 1;
+    /// As [`resolve`](Self::resolve), in no memory, for rays of a chunk which crosses more than anybody sees through.
+    #[cold]
+    fn one_by_one(&self, chunk: Range<usize>, context: &Context, scratch: &mut Scratch, samples: &mut Samples) {
+        for index in chunk {
+            let (ray, (sample, light)) = (self.rays.get(index), self.gains[index]);
+            let mut hits = HitBatch::default();
+            let light = filtered(context, light, |after| {
+                samples.statistics += context.query.next_hit(&ray, std::slice::from_mut(after), &mut hits, scratch);
+                hits.get(0)
+            });
+            samples.add(sample, light);
         }
-        self.keep_first(kept);
     }
+}
 
-    fn keep_first(&mut self, len: usize) {
-        self.rays.truncate(len);
-        self.gains.truncate(len);
-        self.after.truncate(len);
+/// `light` after all surfaces on the way of a ray, of which `next` finds the one after the last.
+pub(super) fn filtered(context: &Context, mut light: Vec3f, mut next: impl FnMut(&mut (f32, u32)) -> Hit) -> Vec3f {
+    let mut after = BEFORE_ALL;
+    for _ in 0..MAX_FILTERS {
+        let hit = next(&mut after);
+        if !hit.is_hit() {
+            return light;
+        }
+        light = light.times(context.filter(hit.primitive));
     }
+    Vec3f::ZERO
 }

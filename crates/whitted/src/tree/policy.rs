@@ -21,8 +21,6 @@ pub struct RaySort {
     pub count: usize,
     /// Where they start.
     pub origins: Origins,
-    /// Whether all their hits are wanted, not only the first, or that there is one.
-    pub every_hit: bool,
 }
 
 /// Where rays start.
@@ -60,8 +58,6 @@ pub enum Reason {
     OneRay,
     /// Fewer rays than a packet has.
     TooFew,
-    /// All hits are wanted, and a packet offers each primitive once.
-    EveryHit,
     /// There are discs, boxes, cylinders or cones, which packets do not test.
     OtherShapes,
     /// Rays that start at different points fit no pyramid.
@@ -92,7 +88,6 @@ pub fn choose(asked: WalkKind, tree: &Tree, primitives: &Primitives, rays: &RayS
         _ if rays.count == 1 => choice(Way::OneByOne, Reason::OneRay),
         WalkKind::Single => choice(Way::OneByOne, Reason::Asked),
         WalkKind::Stream => choice(Way::Lists, Reason::Asked),
-        WalkKind::Auto if rays.every_hit => choice(Way::Lists, Reason::EveryHit),
         WalkKind::Auto if !primitives.shapes().is_empty() => choice(Way::Lists, Reason::OtherShapes),
         WalkKind::Auto if rays.count < PACKET => choice(Way::Lists, Reason::TooFew),
         WalkKind::Auto => match rays.origins {
@@ -121,7 +116,6 @@ impl fmt::Display for Reason {
             Self::Asked => "it was asked for",
             Self::OneRay => "there is only one",
             Self::TooFew => "there are fewer than 64",
-            Self::EveryHit => "all hits are wanted",
             Self::OtherShapes => "there are other shapes than triangles, spheres and planes",
             Self::OwnOrigins => "each starts at a point of its own",
             Self::SharedOrigin => "neighbours start at one point",
@@ -142,7 +136,7 @@ mod tests {
     use crate::geometry::{Disc, Shape, Sphere};
     use crate::math::{Vec3d, Vec3f};
 
-    const MANY: RaySort = RaySort { count: 4096, origins: Origins::Unknown, every_hit: false };
+    const MANY: RaySort = RaySort { count: 4096, origins: Origins::Unknown };
 
     fn spheres() -> Primitives {
         let mut primitives = Primitives::new();
@@ -163,7 +157,6 @@ mod tests {
         assert_eq!(auto(MANY), (Way::Packets, Reason::Tried));
         assert_eq!(auto(RaySort { origins: Origins::Shared, ..MANY }), (Way::Packets, Reason::SharedOrigin));
         assert_eq!(auto(RaySort { origins: Origins::Own, ..MANY }), (Way::Lists, Reason::OwnOrigins));
-        assert_eq!(auto(RaySort { every_hit: true, ..MANY }), (Way::Lists, Reason::EveryHit));
         assert_eq!(auto(RaySort { count: PACKET - 1, ..MANY }), (Way::Lists, Reason::TooFew));
         assert_eq!(auto(RaySort { count: 1, ..MANY }), (Way::OneByOne, Reason::OneRay));
     }

@@ -1,6 +1,7 @@
 //! Asking a tree: batches in, answers out.
 
 use super::all_hits::Sieve;
+use super::crossings::CrossingLists;
 use super::filter::Filtered;
 use super::goal::{Any, Closest, Goal, Next};
 use super::policy::{self, Origins, RaySort, Way};
@@ -45,6 +46,7 @@ impl AddAssign for Counts {
 pub struct Scratch {
     pub(super) rays: PreparedRays,
     pub(super) lists: Lists,
+    pub(super) crossings: CrossingLists,
     pub(super) sieve: Sieve,
 }
 
@@ -200,7 +202,7 @@ impl Query<'_> {
     ) -> Counts {
         let Scratch { rays: prepared, lists, .. } = scratch;
         let first = chunk.start;
-        let sort = RaySort { count: chunk.len(), origins: Origins::Unknown, every_hit: G::EVERY_CROSSING };
+        let sort = RaySort { count: chunk.len(), origins: Origins::Unknown };
         prepared.begin(self.level, self.tree, self.primitives, rays, chunk);
         let (tree, primitives) = (self.tree, self.primitives);
         let mut counts = walk::planes(primitives, prepared, goal);

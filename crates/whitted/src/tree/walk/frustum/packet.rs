@@ -172,11 +172,8 @@ impl Packet {
                     continue;
                 }
                 let rays = ShearedRays { origin, shear: [x, y, self.shear[2].load(token, row)] };
-                let (hit, t) = triangle::intersect(token, &rays, vertices, self.t_min.load(token, row), limit);
-                if hit.any() {
-                    let limit = walk.goal.offer_row(token, first + LANES * row, hit, t, block.primitive(lane), limit);
-                    self.limit.store::<S>(row, limit);
-                }
+                let found = triangle::intersect(token, &rays, vertices, self.t_min.load(token, row), limit);
+                self.offer::<S, G>(token, walk, first, row, found, block.primitive(lane));
             }
         }
         count
@@ -196,13 +193,17 @@ impl Packet {
         let mut survivors = pyramid.touches_spheres(token, block);
         let count = survivors.count_ones();
         let origin = crate::geometry::splat(token, self.origin.to_array());
-        let one = S::F32x16::splat(token, 1.0);
+        let (zero, one) = (S::F32x16::splat(token, 0.0), S::F32x16::splat(token, 1.0));
         while survivors != 0 {
             let lane = survivors.trailing_zeros() as usize % 8;
             survivors &= survivors - 1;
             let center = crate::geometry::splat(token, block.center(lane));
             let radius_squared = S::F32x16::splat(token, block.radius_squared(lane));
             for row in 0..ROWS {
+                let (t_min, limit) = (self.t_min.load(token, row), self.limit.load(token, row));
+                if G::ENDS_RAYS && limit.lt(zero).all() {
+                    continue;
+                }
                 let direction = [
                     self.direction[0].load(token, row),
                     self.direction[1].load(token, row),
@@ -210,17 +211,35 @@ impl Packet {
                 ];
                 let inverse_length_squared = one / Vec3::from(direction).length_squared();
                 let rays = SphereRays { origin, direction, inverse_length_squared };
-                let (t_min, mut limit) = (self.t_min.load(token, row), self.limit.load(token, row));
                 let roots = sphere::roots(&rays, center, radius_squared);
                 let (hit, t) = sphere::first_in_range(roots, t_min, limit);
-                if hit.any() {
-                    let id = block.primitive(lane);
-                    limit = walk.goal.offer_row(token, first + LANES * row, hit, t, id, limit);
-                    self.limit.store::<S>(row, limit);
+                let id = block.primitive(lane);
+                self.offer::<S, G>(token, walk, first, row, (hit, t), id);
+                if G::EVERY_CROSSING {
+                    let (far, limit) = (roots.1, self.limit.load(token, row));
+                    self.offer::<S, G>(token, walk, first, row, (t_min.le(far) & far.le(limit), far), id);
                 }
             }
         }
         count
+    }
+
+    /// Offer what the rays of a row hit at `t`.
+    #[inline(always)]
+    fn offer<S: Simd, G: Goal>(
+        &mut self,
+        token: S,
+        walk: &mut Walk<'_, G>,
+        first: usize,
+        row: usize,
+        (hit, t): (<S::F32x16 as F32Lanes>::Mask, S::F32x16),
+        primitive: u32,
+    ) {
+        if hit.any() {
+            let limit = self.limit.load(token, row);
+            let limit = walk.goal.offer_row(token, first + LANES * row, hit, t, primitive, limit);
+            self.limit.store::<S>(row, limit);
+        }
     }
 }
 
