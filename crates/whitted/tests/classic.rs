@@ -4,6 +4,7 @@ mod common;
 
 use simd::Level;
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use whitted::classic::{
     Alignment, Caster, Cell, CellContent, Event, Grid, KdTree, Math, NodeId, Objects, Operation, Split, Steps,
     Structure, Trace, TriangleTest, Walk, Workload,
@@ -143,6 +144,27 @@ fn empty_space_is_cut_off() {
     let largest = tree.cells().filter(|cell| is_empty(&cell.content)).map(|cell| cell.bounds.half_area());
     let largest = largest.fold(0.0, f32::max);
     assert!(largest > 0.8 * total, "the gap is one leaf: {largest} of {total}");
+}
+
+#[test]
+fn a_build_that_is_stopped_leaves_a_small_tree_that_finds_the_same() {
+    let (primitives, rays) = (cloud(3000, 0.03), rays_through(200));
+    for split in [Split::Sah, Split::Median] {
+        let asked = AtomicUsize::new(0);
+        let stopped = KdTree::build_until(&primitives, split, &|| asked.fetch_add(1, Ordering::Relaxed) >= 10);
+        stopped.validate(&primitives).unwrap();
+        let whole = KdTree::build(&primitives, split);
+        assert!(stopped.report().nodes <= 21 && whole.report().nodes > 1000, "{:?}", stopped.report());
+        let objects = Objects::new(&primitives, TriangleTest::Watertight);
+        let [stopped, whole] = [stopped, whole].map(Structure::Kd);
+        for ray in &rays {
+            let hit = |structure| {
+                let (walk, math) = (Walk::Sequential, Math::Scalar);
+                Caster { primitives: &primitives, objects: &objects, structure, walk, math }.closest_hit(ray, &mut ())
+            };
+            assert_eq!(bits(hit(&stopped)), bits(hit(&whole)));
+        }
+    }
 }
 
 #[test]

@@ -87,7 +87,7 @@ impl Caster<'_> {
         if !ray.is_sound() {
             return ray.t_max;
         }
-        let cast = Cast { caster: self, ray, goal, observer };
+        let cast = Cast { caster: self, ray: &ray, goal, observer };
         match self.math {
             Math::Scalar => cast.with(Plain),
             Math::Vector(level) | Math::Estimated(level) => simd::dispatch(level, cast),
@@ -95,10 +95,11 @@ impl Caster<'_> {
     }
 }
 
-/// One ray to be cast.
+/// One ray to be cast. By reference: a copy for the kernel is read before the ray has reached the cache (mix-10, naive by
+/// SSE: 0.081 s, by reference 0.069 s).
 struct Cast<'a, G, O> {
     caster: &'a Caster<'a>,
-    ray: CastRay,
+    ray: &'a CastRay,
     goal: &'a mut G,
     observer: &'a mut O,
 }
@@ -108,8 +109,10 @@ impl<G: Goal, O: Observer> Kernel for Cast<'_, G, O> {
 
     #[inline(always)]
     fn run<S: Simd>(self, token: S) -> f32 {
-        let estimates = matches!(self.caster.math, Math::Estimated(_));
-        self.with(Packed { token, estimates })
+        match self.caster.math {
+            Math::Estimated(_) => self.with(Packed::<S, true>(token)),
+            _ => self.with(Packed::<S, false>(token)),
+        }
     }
 }
 
@@ -118,8 +121,8 @@ impl<G: Goal, O: Observer> Cast<'_, G, O> {
     fn with<M: Arithmetic>(self, math: M) -> f32 {
         let Self { caster, ray, goal, observer } = self;
         let Caster { primitives, objects, structure, walk, .. } = *caster;
-        let (ray, limit) = (&ray, ray.t_max);
-        let mut walker = Walker { math, primitives, objects, ray, goal, observer, limit };
+        let (taken, limit) = (math.ray(ray), ray.t_max);
+        let mut walker = Walker { math, taken, primitives, objects, ray, goal, observer, limit };
         walker.planes();
         if walker.has_ended() {
             return walker.limit;

@@ -72,8 +72,15 @@ pub enum CellContent<'a> {
 impl KdTree {
     /// Build the tree. Bounded in time, memory and depth for any input; uses the current rayon pool.
     pub fn build(primitives: &Primitives, split: Split) -> Self {
+        Self::build_until(primitives, split, &|| false)
+    }
+
+    /// As [`build`](Self::build), until `stop` says so: what was not divided by then stays in large leaves. Such a tree
+    /// finds the same hits, slowly. `stop` is asked before each node, from any thread; the first node of a million
+    /// primitives takes about a second.
+    pub fn build_until(primitives: &Primitives, split: Split, stop: &(dyn Fn() -> bool + Sync)) -> Self {
         let fit = Fit::new(primitives.bounds());
-        let (lines, references, bounds) = build::build(primitives, fit, split);
+        let (lines, references, bounds) = build::build(primitives, fit, split, stop);
         let mut tree = Self { lines, references, bounds, fit, report: KdReport::default() };
         tree.report = tree.count();
         tree

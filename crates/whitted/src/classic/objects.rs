@@ -70,11 +70,12 @@ impl Objects {
         self.has_triangles
     }
 
-    /// Offer what one primitive has to offer: see [`Goal`].
+    /// Offer what one primitive has to offer: see [`Goal`]. `taken` is the ray as `math` has it.
     #[inline(always)]
     pub(super) fn offer<M: Arithmetic, G: Goal>(
         &self,
         math: M,
+        taken: &M::Ray,
         primitives: &Primitives,
         id: u32,
         ray: &CastRay,
@@ -83,7 +84,7 @@ impl Objects {
     ) {
         match &self.blocks[id as usize] {
             Object::Sphere { center, radius_squared } => {
-                offer_roots(goal, id, math.roots(ray, center, *radius_squared), ray.t_min, limit);
+                offer_roots(goal, id, math.roots(taken, center, *radius_squared), ray.t_min, limit);
             }
             Object::Triangle(vertices) => {
                 if let Some(t) = watertight(ray, vertices, *limit) {

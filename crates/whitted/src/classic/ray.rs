@@ -9,11 +9,7 @@ use crate::tree::{Fit, sound};
 use simd::{MaskLanes, Scalar};
 
 /// A ray in the scaled coordinates of objects and trees.
-#[repr(align(16))]
 pub(super) struct CastRay {
-    /// With a fourth component, for the vector of four.
-    pub(super) packed_origin: [f32; 4],
-    pub(super) packed_direction: [f32; 4],
     pub(super) origin: Vec3f,
     pub(super) direction: Vec3f,
     pub(super) t_min: f32,
@@ -29,10 +25,7 @@ impl CastRay {
     #[inline(always)]
     pub(super) fn new(ray: &Ray, scale: f32, wants_shear: bool) -> Self {
         let (origin, direction) = (ray.origin * scale, ray.direction * scale);
-        let packed = |v: Vec3f| [v.x, v.y, v.z, 0.0];
         Self {
-            packed_origin: packed(origin),
-            packed_direction: packed(direction),
             origin,
             direction,
             t_min: ray.t_min,

@@ -61,7 +61,11 @@ struct Builder<'a> {
     fit: Fit,
     split: Split,
     max_depth: usize,
+    stop: Stop<'a>,
 }
+
+/// Asked before every node: true ends the build, with nothing but leaves from there on.
+pub(super) type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// No leaf lies deeper: bounds the stacks of walks and of this builder.
 pub(super) const MAX_DEPTH: usize = 64;
@@ -76,7 +80,7 @@ const ADDED: usize = 8;
 const LEAST_ROOM: usize = 256;
 
 /// Build the tree: its nodes, its references, and the box around everything, in coordinates multiplied by the scale.
-pub(super) fn build(primitives: &Primitives, fit: Fit, split: Split) -> (Vec<Line>, Vec<u32>, Aabb) {
+pub(super) fn build(primitives: &Primitives, fit: Fit, split: Split, stop: Stop) -> (Vec<Line>, Vec<u32>, Aabb) {
     let reference = |primitive: u32| {
         let bounds = primitives.primitive_bounds(primitive)?;
         Some(Reference { bounds: multiplied(bounds, fit.scale()).grown(fit.padding()), primitive })
@@ -87,7 +91,7 @@ pub(super) fn build(primitives: &Primitives, fit: Fit, split: Split) -> (Vec<Lin
     let room = (ADDED * count + LEAST_ROOM).min(MAX_INDEX.saturating_sub(count));
     // More than can be numbered stay in one leaf, which begins at 0.
     let max_depth = if count < MAX_INDEX { max_depth(count) } else { 0 };
-    let builder = Builder { primitives, fit, split, max_depth };
+    let builder = Builder { primitives, fit, split, max_depth, stop };
     let root = builder.grow(Node { bounds, references, depth: 0, room });
     let (lines, references) = layout::lay_out(root);
     (lines, references, bounds)
@@ -103,7 +107,7 @@ fn max_depth(count: usize) -> usize {
 impl Builder<'_> {
     fn grow(&self, node: Node) -> Branch {
         let plane = match self.split {
-            _ if node.depth >= self.max_depth => None,
+            _ if node.depth >= self.max_depth || (self.stop)() => None,
             Split::Sah => sweep::cheapest(&node.references, node.bounds),
             Split::Median => median::middle(&node.references, node.bounds, node.depth),
         };

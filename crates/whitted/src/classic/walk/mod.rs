@@ -15,8 +15,9 @@ use crate::geometry::Primitives;
 use crate::tree::{Goal, offer_crossings};
 
 /// A ray under way.
-pub(super) struct Walker<'a, M, G, O> {
+pub(super) struct Walker<'a, M: Arithmetic, G, O> {
     pub(super) math: M,
+    pub(super) taken: M::Ray,
     pub(super) primitives: &'a Primitives,
     pub(super) objects: &'a Objects,
     pub(super) ray: &'a CastRay,
@@ -32,7 +33,7 @@ impl<M: Arithmetic, G: Goal, O: Observer> Walker<'_, M, G, O> {
     pub(super) fn test(&mut self, id: u32) {
         self.observer.test(id);
         let before = self.limit;
-        self.objects.offer(self.math, self.primitives, id, self.ray, self.goal, &mut self.limit);
+        self.objects.offer(self.math, &self.taken, self.primitives, id, self.ray, self.goal, &mut self.limit);
         self.tell(before, id);
     }
 
@@ -59,6 +60,7 @@ impl<M: Arithmetic, G: Goal, O: Observer> Walker<'_, M, G, O> {
     }
 
     /// Test the unbounded planes, which are in no structure.
+    #[inline(always)]
     pub(super) fn planes(&mut self) {
         for (id, plane) in (self.primitives.first_plane()..).zip(self.primitives.planes()) {
             if self.has_ended() {
