@@ -94,3 +94,35 @@ fn make(path: &Path) -> Result<(), Failure> {
         Ok(()) => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use whitted::render::Cancel;
+
+    /// A report of nothing that ended like this.
+    fn report(ending: Ending) -> Report {
+        let plan = Plan { experiments: Vec::new(), effort: Effort::quick() };
+        let nothing = paper::run(&plan, &Display::for_steps(true), &Cancel::new()).unwrap();
+        let check = paper::Check {
+            variant: "grid, SSE".into(),
+            of_paper: true,
+            scene: "mix-10".into(),
+            pixels: 100,
+            differing: 3,
+            largest: 1.0,
+            allowed: 2,
+        };
+        Report { ending, checks: vec![check], ..nothing }
+    }
+
+    #[test]
+    fn a_variant_that_computes_something_else_fails_the_run() {
+        let folder = Folder { path: "out".into() };
+        let Err(Failure::Wrong(text)) = end(&report(Ending::Wrong), &folder, true) else { panic!("it is wrong") };
+        assert!(text.contains("grid, SSE, mix-10: 3 of 100 pixels differ, 2 may"), "{text}");
+        assert!(text.contains("report.html"), "{text}");
+        assert!(matches!(end(&report(Ending::Interrupted), &folder, true), Err(Failure::InterruptedAfter(_))));
+        assert_eq!(end(&report(Ending::Complete), &folder, true), Ok(()));
+    }
+}

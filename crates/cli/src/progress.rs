@@ -21,7 +21,7 @@ impl Display {
     pub(crate) fn new(quiet: bool) -> Self {
         match (quiet, std::io::stderr().is_terminal()) {
             (true, _) => Self::Quiet,
-            (false, false) => Self::Lines(Mutex::new(Ticker { last: Instant::now() })),
+            (false, false) => Self::Lines(Mutex::new(Ticker::new(Instant::now()))),
             (false, true) => Self::Bar(bar()),
         }
     }
@@ -46,7 +46,7 @@ impl Display {
     pub(crate) fn for_steps(quiet: bool) -> Self {
         let display = Self::new(quiet);
         if let Self::Bar(bar) = &display {
-            let style = ProgressStyle::with_template("{bar:24} {percent:>3} %  {elapsed}  {wide_msg}");
+            let style = ProgressStyle::with_template("{bar:24} {percent:>3} %  {elapsed}{wide_msg}");
             bar.set_style(style.expect("the template is well-formed"));
         }
         display
@@ -58,13 +58,30 @@ impl paper::Watch for Display {
         const STEPS: f64 = 1000.0;
         match self {
             Self::Quiet => {}
-            Self::Lines(ticker) => line_if_due(ticker, || format!("{:3.0} % {what}", 100.0 * part)),
+            Self::Lines(ticker) => {
+                line_if_due(ticker, |elapsed| format!("{:3.0} %{} {what}", 100.0 * part, left(elapsed, part)));
+            }
             Self::Bar(bar) => {
-                bar.set_message(what.to_owned());
+                bar.set_message(format!("{} {what}", left(bar.elapsed(), part)));
                 bar.set_length(STEPS as u64);
                 bar.set_position((STEPS * part) as u64);
             }
         }
+    }
+}
+
+/// How long the rest of the work takes if it goes on as it did, after a comma; nothing before that can be said.
+fn left(elapsed: Duration, part: f64) -> String {
+    const ENOUGH: f64 = 0.02;
+    const MINUTE: f64 = 60.0;
+    /// Seconds are told in steps of ten: the last digit would be a guess.
+    const STEP: f64 = 10.0;
+    if part < ENOUGH {
+        return String::new();
+    }
+    match elapsed.as_secs_f64() * (1.0 - part) / part {
+        seconds if seconds < 2.0 * MINUTE => format!(", about {:.0} s left:", STEP * (seconds / STEP).ceil()),
+        seconds => format!(", about {:.0} min left:", seconds / MINUTE),
     }
 }
 
@@ -91,7 +108,7 @@ impl Display {
     pub(crate) fn rays_done(&self, done: &Done) {
         match self {
             Self::Quiet => {}
-            Self::Lines(ticker) => line_if_due(ticker, || done.words()),
+            Self::Lines(ticker) => line_if_due(ticker, |_| done.words()),
             Self::Bar(bar) => {
                 bar.set_message(if done.bytes.is_some() { "tracing".to_owned() } else { done.words() });
                 bar.set_length(done.bytes.unwrap_or(1));
@@ -101,12 +118,13 @@ impl Display {
     }
 }
 
-/// Prints a plain line if the last one is long enough ago.
-fn line_if_due(ticker: &Mutex<Ticker>, words: impl FnOnce() -> String) {
+/// Prints a plain line if the last one is long enough ago; `words` are told how long the work took until now.
+fn line_if_due(ticker: &Mutex<Ticker>, words: impl FnOnce(Duration) -> String) {
     // A poisoned ticker only means that another thread panicked while printing.
     let Ok(mut ticker) = ticker.lock() else { return };
-    if ticker.is_due(Instant::now()) {
-        eprintln!("{}", words());
+    let now = Instant::now();
+    if ticker.is_due(now) {
+        eprintln!("{}", words(now.duration_since(ticker.start)));
     }
 }
 
@@ -115,7 +133,7 @@ impl Progress for Display {
         match self {
             Self::Quiet => {}
             Self::Lines(ticker) => {
-                line_if_due(ticker, || format!("{} {} %", phase_name(phase), 100 * done / total.max(1)));
+                line_if_due(ticker, |_| format!("{} {} %", phase_name(phase), 100 * done / total.max(1)));
             }
             Self::Bar(bar) => {
                 bar.set_message(phase_name(phase));
@@ -132,10 +150,15 @@ fn phase_name(phase: u32) -> &'static str {
 
 /// Says when the next line is due.
 pub(crate) struct Ticker {
+    start: Instant,
     last: Instant,
 }
 
 impl Ticker {
+    fn new(start: Instant) -> Self {
+        Self { start, last: start }
+    }
+
     fn is_due(&mut self, now: Instant) -> bool {
         let due = now.duration_since(self.last) >= LINE_INTERVAL;
         if due {
@@ -152,11 +175,21 @@ mod tests {
     #[test]
     fn lines_keep_their_distance() {
         let start = Instant::now();
-        let mut ticker = Ticker { last: start };
+        let mut ticker = Ticker::new(start);
         let due_at = |ticker: &mut Ticker, seconds| ticker.is_due(start + Duration::from_secs(seconds));
         assert!(!due_at(&mut ticker, 1));
         assert!(due_at(&mut ticker, 2));
         assert!(!due_at(&mut ticker, 3));
         assert!(due_at(&mut ticker, 5));
+    }
+
+    #[test]
+    fn what_is_left_is_told_once_it_can_be() {
+        let left = |seconds, part| left(Duration::from_secs(seconds), part);
+        assert_eq!(left(5, 0.01), "");
+        assert_eq!(left(30, 0.5), ", about 30 s left:");
+        assert_eq!(left(95, 0.95), ", about 10 s left:");
+        assert_eq!(left(60, 0.1), ", about 9 min left:");
+        assert_eq!(left(600, 1.0), ", about 0 s left:");
     }
 }

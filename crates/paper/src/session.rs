@@ -38,11 +38,25 @@ pub(crate) struct Session<'a> {
     checks: RefCell<Vec<Check>>,
 }
 
-impl Session<'_> {
+impl<'a> Session<'a> {
+    /// # Errors
+    /// If the system gives no threads.
+    pub(crate) fn new(effort: &'a Effort, watch: &'a dyn Watch, cancel: &'a Cancel) -> Result<Self, NoThreads> {
+        let threads = |count| Threads::new(count).map_err(NoThreads);
+        let (one, several) = (threads(1)?, threads(effort.threads)?);
+        let (span, checks) = (Cell::default(), RefCell::default());
+        Ok(Self { effort, cancel, one, several, watch, span, checks })
+    }
+
     /// Tells how far the present experiment is (0 to 1), and ends it if the user wants.
     pub(crate) fn at(&self, part: f64, what: &str) -> Result<(), Cancelled> {
         let (start, length) = self.span.get();
         self.watch.at(start + length * part.clamp(0.0, 1.0), what);
+        self.go_on()
+    }
+
+    /// Ends the experiment if the user wants.
+    pub(crate) fn go_on(&self) -> Result<(), Cancelled> {
         if self.cancel.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
@@ -68,14 +82,12 @@ impl Session<'_> {
 pub fn run(plan: &Plan, watch: &dyn Watch, cancel: &Cancel) -> Result<Report, NoThreads> {
     let start = Instant::now();
     let mut head = Head::new(&plan.effort);
-    let (one, several) = (Threads::new(1).map_err(NoThreads)?, Threads::new(plan.effort.threads).map_err(NoThreads)?);
-    let (span, checks) = (Cell::default(), RefCell::default());
-    let session = Session { effort: &plan.effort, cancel, one, several, watch, span, checks };
+    let session = Session::new(&plan.effort, watch, cancel)?;
     let mut sections = Vec::new();
-    let whole: f64 = plan.experiments.iter().map(|experiment| experiment.weight()).sum();
+    let whole: f64 = plan.experiments.iter().map(|experiment| experiment.weight(&plan.effort)).sum();
     for &experiment in &plan.experiments {
         let (begun, taken) = session.span.get();
-        session.span.set((begun + taken, experiment.weight() / whole));
+        session.span.set((begun + taken, experiment.weight(&plan.effort) / whole));
         let section = section(&session, experiment);
         let complete = section.complete;
         sections.push(section);
@@ -84,17 +96,45 @@ pub fn run(plan: &Plan, watch: &dyn Watch, cancel: &Cancel) -> Result<Report, No
         }
     }
     let checks = session.checks.into_inner();
-    let ending = match sections.iter().all(|section| section.complete) {
+    let ending = ending(&sections, &checks);
+    head.seconds = start.elapsed().as_secs_f64();
+    Ok(Report { head, ending, sections, checks })
+}
+
+/// What is wrong comes before what is missing.
+fn ending(sections: &[Section], checks: &[Check]) -> Ending {
+    match sections.iter().all(|section| section.complete) {
         _ if checks.iter().any(|check| !check.holds()) => Ending::Wrong,
         true => Ending::Complete,
         false => Ending::Interrupted,
-    };
-    head.seconds = start.elapsed().as_secs_f64();
-    Ok(Report { head, ending, sections, checks })
+    }
 }
 
 fn section(session: &Session, experiment: Experiment) -> Section {
     let mut section = Section::new(experiment);
     section.complete = (experiment.run())(session, &mut section).is_ok();
     section
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_wrong_comes_before_what_is_missing() {
+        let section = |complete| Section { complete, ..Section::new(Experiment::Table1) };
+        let check = |differing| Check {
+            variant: "grid".into(),
+            of_paper: true,
+            scene: "mix-10".into(),
+            pixels: 10,
+            differing,
+            largest: 1.0,
+            allowed: 0,
+        };
+        assert_eq!(ending(&[section(true)], &[check(0)]), Ending::Complete);
+        assert_eq!(ending(&[section(true), section(false)], &[check(0)]), Ending::Interrupted);
+        assert_eq!(ending(&[section(true)], &[check(0), check(1)]), Ending::Wrong);
+        assert_eq!(ending(&[section(false)], &[check(1)]), Ending::Wrong);
+    }
 }

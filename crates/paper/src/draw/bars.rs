@@ -23,12 +23,12 @@ pub(crate) struct Bar {
 }
 
 /// Where bars begin and where the longest ends; beyond it is room for its number.
-const FROM: f64 = 150.0;
-const TO: f64 = 384.0;
+const FROM: f64 = 146.0;
+const TO: f64 = 310.0;
 const _: () = assert!(TO < WIDTH);
 /// Height of a row, and what the paper's bar adds to it.
-const ROW: f64 = 15.0;
-const PAPER_ROW: f64 = 11.0;
+const ROW: f64 = 16.0;
+const PAPER_ROW: f64 = 12.0;
 /// Heights of a group's name, of the legend above all and of the axis below.
 const HEADING: f64 = 26.0;
 const LEGEND: f64 = 18.0;
@@ -59,9 +59,9 @@ pub(crate) fn bar_chart(groups: &[Group], unit: &str) -> Document {
 fn entries(groups: &[Group]) -> Vec<(&'static str, &'static str)> {
     let any = |is: fn(&Bar) -> bool| groups.iter().flat_map(|group| &group.bars).any(is);
     let all = [
-        (any(|bar| bar.of_paper), ("classic", "the paper's technique, this run")),
-        (any(|bar| !bar.of_paper), ("ours", "ours, this run")),
-        (any(|bar| bar.paper.is_some()), ("paper", "printed in the paper")),
+        (any(|bar| bar.of_paper), ("classic", "the paper's, measured")),
+        (any(|bar| !bar.of_paper), ("ours", "ours, measured")),
+        (any(|bar| bar.paper.is_some()), ("paper", "printed")),
     ];
     all.into_iter().filter(|(occurs, _)| *occurs).map(|(_, entry)| entry).collect()
 }
@@ -98,9 +98,9 @@ fn draw(mut out: Document, bar: &Bar, scale: &Scale, y: f64) -> Document {
     if let Some(paper) = bar.paper {
         let end = scale.at(paper);
         let tip = format!("{} in the paper: {}", bar.name, number(paper));
-        out = out.add(rectangle(FROM, y + 12.0, (end - FROM).max(1.0), 6.0, "paper", &tip)).add(text(
+        out = out.add(rectangle(FROM, y + 12.5, (end - FROM).max(1.0), 7.0, "paper", &tip)).add(text(
             end + 4.0,
-            y + 18.5,
+            y + 20.0,
             "value muted",
             Anchor::Start,
             number(paper),

@@ -63,9 +63,9 @@ pub(crate) fn plan(plan: &Plan, path: Option<&Path>) -> Document {
     out = out.add(arrow_head()).add(ray);
     for (index, station) in path.stations.iter().enumerate() {
         let at = place(*station);
-        out = out.add(circle(at, 6.0, "station", "")).add(text(
+        out = out.add(circle(at, 7.5, "station", "")).add(text(
             at[0],
-            at[1] + 3.2,
+            at[1] + 3.6,
             "number",
             Anchor::Middle,
             (index + 1).to_string(),

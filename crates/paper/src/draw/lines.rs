@@ -13,8 +13,8 @@ pub(crate) struct Series {
 }
 
 /// Where the axes lie, and how high all is.
-const LEFT: f64 = 40.0;
-const RIGHT: f64 = 330.0;
+const LEFT: f64 = 34.0;
+const RIGHT: f64 = 262.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 230.0;
 const HEIGHT: f64 = 268.0;

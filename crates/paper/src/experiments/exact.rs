@@ -42,7 +42,7 @@ pub(crate) fn run(session: &Session, section: &mut Section) -> Result<(), Cancel
 
 fn spheres(session: &Session) -> Result<(), Cancelled> {
     let stock = Stock::spheres(PaperFamily::Mix, SPHERES, SIZE, &session.one);
-    let classics = Classics::new(&stock, TriangleTest::Watertight, &session.one);
+    let classics = Classics::new(session, &stock, TriangleTest::Watertight, &session.one)?;
     let maths = [
         ("scalar", Math::Scalar, Bound::Equal),
         ("SSE", Math::sse(), Bound::Equal),
@@ -75,8 +75,8 @@ fn triangles(session: &Session) -> Result<(), Cancelled> {
     let mut scene = mesh::scene(BALLS);
     scene.settings.size = SIZE;
     let stock = Stock::new(format!("mix-{BALLS} in triangles"), scene, &session.one);
-    let watertight = Classics::new(&stock, TriangleTest::Watertight, &session.one);
-    let projection = Classics::new(&stock, TriangleTest::Projection, &session.one);
+    let watertight = Classics::new(session, &stock, TriangleTest::Watertight, &session.one)?;
+    let projection = Classics::new(session, &stock, TriangleTest::Projection, &session.one)?;
     // Without a tree every ray would meet twenty thousand triangles.
     let by_tree = |contestant: &Contestant| !contestant.name.starts_with("naive");
     let mut all = watertight.all(session, &[("scalar", Math::Scalar, Bound::Equal)]);

@@ -4,6 +4,7 @@ use super::stock::Stock;
 use crate::draw::{Path, Plan, Rect, Role, plan};
 use crate::report::{Block, Drawing, Section, plural};
 use crate::session::Session;
+use std::ops::RangeInclusive;
 use whitted::classic::{
     Caster, CellContent, Event, KdTree, Math, NodeId, Objects, Split, Structure, Trace, TriangleTest, Walk,
 };
@@ -147,9 +148,9 @@ pub(crate) fn traversal(session: &Session, section: &mut Section) -> Result<(), 
             .into();
     session.at(0.0, "figure 2")?;
     let sliced = Sliced::new(session);
-    let way =
-        rays(&sliced).map(|ray| Way::of(&sliced, &ray)).filter(|way| way.hit.is_some() && way.leaves.len() <= READABLE);
-    let Some(way) = way.max_by_key(|way| way.leaves.len()) else { return Ok(()) };
+    let ways = rays(&sliced).map(|ray| Way::of(&sliced, &ray));
+    let shown = ways.filter(|way| way.hit.is_some() && READABLE.contains(&way.leaves.len()));
+    let Some(way) = shown.max_by(|a, b| a.room().total_cmp(&b.room())) else { return Ok(()) };
     let nodes: Vec<NodeId> = way.leaves.iter().map(|(node, _)| *node).collect();
     let role = |id| match () {
         () if way.hit.is_some_and(|(primitive, _)| primitive == id) => Role::Hit,
@@ -158,11 +159,7 @@ pub(crate) fn traversal(session: &Session, section: &mut Section) -> Result<(), 
     };
     let point = |t| flat(way.ray.at(t));
     let end = way.hit.map_or(f32::NAN, |(_, t)| t);
-    let path = Path {
-        from: point(0.0),
-        to: point(end),
-        stations: way.leaves.iter().map(|&(_, [from, to])| point(0.5 * (from + to.min(end)))).collect(),
-    };
+    let path = Path { from: point(0.0), to: point(end), stations: way.stations().into_iter().map(point).collect() };
     let caption = format!(
         "{} leaves, reached from the root each time by {}; {}, that of the hit included.",
         nodes.len(),
@@ -176,8 +173,8 @@ pub(crate) fn traversal(session: &Session, section: &mut Section) -> Result<(), 
     Ok(())
 }
 
-/// The most leaves on the way of the drawn ray.
-const READABLE: usize = 9;
+/// Leaves on the way of the drawn ray: enough to see something, few enough to number them.
+const READABLE: RangeInclusive<usize> = 6..=9;
 
 /// Rays within the slice, from its left edge to its right.
 fn rays(sliced: &Sliced) -> impl Iterator<Item = Ray> {
@@ -227,5 +224,17 @@ impl Way {
             }
         }
         way
+    }
+
+    /// Where the numbers of the leaves stand: half-way through each, as far as the ray goes.
+    fn stations(&self) -> Vec<f32> {
+        let end = self.hit.map_or(f32::INFINITY, |(_, t)| t);
+        self.leaves.iter().map(|&(_, [from, to])| 0.5 * (from + to.min(end))).collect()
+    }
+
+    /// The least distance between two numbers.
+    fn room(&self) -> f32 {
+        let length = self.ray.direction.length_squared().sqrt();
+        self.stations().windows(2).map(|pair| (pair[1] - pair[0]) * length).fold(f32::INFINITY, f32::min)
     }
 }

@@ -1,6 +1,7 @@
 //! The experiments, one a file: which variants, in which scenes, and what they show.
 
 pub(crate) mod exact;
+pub(crate) mod grid;
 pub(crate) mod kd_tree;
 mod kernels;
 mod mesh;

@@ -1,7 +1,7 @@
 //! Figures 3, 4 and 5, and where the work goes: pictures of the renderer itself.
 
 use super::stock::Stock;
-use crate::report::{Block, Picture, Section, percent, plural};
+use crate::report::{Block, Picture, Section, percent, plural, spaced};
 use crate::session::Session;
 use whitted::geometry::Plane;
 use whitted::math::{Vec3d, Vec3f};
@@ -29,31 +29,38 @@ pub(crate) fn importance(session: &Session, section: &mut Section) -> Result<(),
         "White are the pixels where a ray was not followed because it could contribute too little, before the \
         depth limit ended its branch."
             .into();
-    section.differs =
-        "The paper gives no threshold. At 1/255, the default, no cut can be seen in a picture of eight bits; a \
-        larger one saves many rays where every sphere both reflects and refracts."
-            .into();
-    session.at(0.0, "the scene of figure 3")?;
-    let stock = Stock::spheres(PaperFamily::All4, SPHERES, SIZE, &session.several);
-    let limited = |min_weight| Settings { min_weight, ..stock.scene.settings.clone() };
-    let unlimited = render(session, &stock, &limited(0.0))?.statistics.rays();
-    for (id, name, threshold) in [("figure3-255", "1/255", 1.0 / 255.0), ("figure3-20", "1/20", 1.0 / 20.0)] {
-        session.at(0.4, name)?;
+    section.differs = "The paper gives no threshold. At 1/255, the default, no cut can be seen in a picture of eight bits; a \
+        larger one saves more rays. Glass is white throughout, since it reflects little; mirrors are cut where they see \
+        each other often enough."
+        .into();
+    session.at(0.0, "the scenes of figure 3")?;
+    let flake = Stock::new("sphereflake".into(), Scene { settings: single(), ..flake(FLAKE_LEVELS) }, &session.several);
+    for (part, stock, id, name, threshold) in
+        [(0.1, mix(session), "figure3-mix", "1/255", 1.0 / 255.0), (0.5, flake, "figure3-flake", "1/20", 1.0 / 20.0)]
+    {
+        session.at(part, &stock.name)?;
+        let limited = |min_weight| Settings { min_weight, ..stock.scene.settings.clone() };
+        let unlimited = render(session, &stock, &limited(0.0))?.statistics.rays();
         let settings = limited(threshold);
         let frame = render(session, &stock, &settings)?;
         let [mask] = &aovs(session, &stock, &settings, &frame, &[Aov::Importance])?[..] else { continue };
         let white = mask.rgb8.chunks_exact(3).filter(|pixel| pixel[0] > 0).count();
-        let part = percent(white as f64 / frame.first.len() as f64);
-        let (rays, all) = (frame.statistics.rays(), plural(unlimited, "ray"));
+        let share = percent(white as f64 / frame.first.len() as f64);
         let caption = format!(
-            "{}, no ray below a weight of {name}: {} instead of {all}; {part} of the pixels are white.",
+            "{}, no ray below a weight of {name}: {} instead of {}; {share} of the pixels are white.",
             stock.name,
-            plural(rays, "ray")
+            plural(frame.statistics.rays(), "ray"),
+            spaced(unlimited),
         );
-        let alt = format!("White where rays were cut, {part} of the picture, within the spheres; black elsewhere.");
+        let alt = format!("White where rays were cut, {share} of the picture, within spheres; black elsewhere.");
         section.blocks.push(Block::Picture(picture(id, settings.size, &mask.rgb8, caption, alt)));
     }
     Ok(())
+}
+
+/// A ray for each pixel.
+fn single() -> Settings {
+    Settings { antialias: Antialias::Off, size: SIZE, ..Settings::default() }
 }
 
 /// Where the work goes.
@@ -125,7 +132,7 @@ pub(crate) fn example(session: &Session, section: &mut Section) -> Result<(), Ca
         easily described: a sphere with nine smaller ones around it, each with nine around it, and so on."
         .into();
     session.at(0.0, "the scene of figure 5")?;
-    let stock = Stock::new("sphereflake".into(), flake(), &session.several);
+    let stock = Stock::new("sphereflake".into(), flake(FLAKE_LEVELS), &session.several);
     let settings = &stock.scene.settings;
     let frame = render(session, &stock, settings)?;
     let (spheres, rays) = (stock.scene.spheres.len() as u64, frame.statistics.rays());
@@ -141,10 +148,13 @@ pub(crate) fn example(session: &Session, section: &mut Section) -> Result<(), Ca
     Ok(())
 }
 
-/// Mirroring spheres in four sizes over a chequered floor.
-fn flake() -> Scene {
-    const LEVELS: u32 = 3;
-    const COLORS: [[f32; 3]; 4] = [[0.9, 0.75, 0.35], [0.75, 0.3, 0.25], [0.3, 0.5, 0.7], [0.35, 0.6, 0.4]];
+/// Levels of the sphereflake of Figure 5.
+const FLAKE_LEVELS: u32 = 3;
+
+/// A sphereflake of `levels` levels, at most 4, each in its colour, over a chequered floor.
+pub(super) fn flake(levels: u32) -> Scene {
+    const COLORS: [[f32; 3]; 5] =
+        [[0.9, 0.75, 0.35], [0.75, 0.3, 0.25], [0.3, 0.5, 0.7], [0.35, 0.6, 0.4], [0.6, 0.45, 0.7]];
     let shiny = |color: [f32; 3]| Material {
         color: Texture::Color(color.into()),
         diffuse: 0.5,
@@ -167,7 +177,7 @@ fn flake() -> Scene {
         vfov: 36.0,
         ..Camera::default()
     };
-    let spheres = sphereflake(LEVELS).expect("three levels are few spheres");
+    let spheres = sphereflake(levels).expect("four levels are few spheres");
     Scene {
         cameras: vec![NamedCamera { name: "main".to_owned(), camera }],
         lights: vec![light([4.0, 6.0, 3.0], 0.75), light([-5.0, 4.0, 4.0], 0.35)],
@@ -175,7 +185,10 @@ fn flake() -> Scene {
         background: Background::Gradient { up: Vec3f::new(0.12, 0.3, 0.62), down: Vec3f::new(0.85, 0.85, 0.8) },
         materials: COLORS.map(shiny).into_iter().chain([floor]).enumerate().map(material).collect(),
         spheres: spheres.into_iter().map(|sphere| (sphere.center, sphere.radius, sphere.class)).collect(),
-        planes: vec![(Plane { point: Vec3d::new(0.0, -0.5, 0.0), normal: Vec3d::new(0.0, 1.0, 0.0) }, LEVELS + 1)],
+        planes: vec![(
+            Plane { point: Vec3d::new(0.0, -0.5, 0.0), normal: Vec3d::new(0.0, 1.0, 0.0) },
+            COLORS.len() as u32,
+        )],
         settings: Settings { antialias_max: SAMPLES, ..Settings::default() },
         ..Scene::default()
     }

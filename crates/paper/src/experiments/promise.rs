@@ -5,7 +5,7 @@ use super::stock::Stock;
 use crate::draw::{Series, line_chart};
 use crate::report::{Block, Cell, Column, Drawing, Row, Section, Table, number, spaced};
 use crate::session::Session;
-use whitted::classic::TriangleTest;
+use whitted::classic::{TriangleTest, Walk};
 use whitted::render::{Cancelled, Execution, Method, PixelRect, Silent, Statistics, Unwatched, render_rect};
 use whitted::scene::generate::PaperFamily;
 use whitted::scene::{Prepared, Settings};
@@ -57,9 +57,11 @@ pub(crate) fn run(session: &Session, section: &mut Section) -> Result<(), Cancel
 fn scene(session: &Session, count: u32, all: &mut Vec<Counted>) -> Result<(), Cancelled> {
     let stock = Stock::spheres(PaperFamily::Mix, count, SIZE, &session.several);
     let unlit = stock.unlit();
-    let classics = Classics::new(&stock, TriangleTest::Watertight, &session.several);
+    let classics = Classics::new(session, &stock, TriangleTest::Watertight, &session.several)?;
     for (name, structure) in [("grid", &classics.grid), ("median", &classics.median), ("SAH", &classics.sah)] {
-        let count = |prepared: &Prepared, settings: &Settings| classics.count(session, structure, prepared, settings);
+        let count = |prepared: &Prepared, settings: &Settings| {
+            classics.count(session, (structure, Walk::Stack), prepared, settings)
+        };
         push(all, name, true, per_ray(&stock, &unlit, count)?);
     }
     push(all, "wide", false, per_ray(&stock, &unlit, |prepared, settings| wide(session, prepared, settings))?);

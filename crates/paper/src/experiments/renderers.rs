@@ -35,12 +35,20 @@ pub(super) struct Classics<'a> {
 
 impl<'a> Classics<'a> {
     /// Builds all, with triangles tested like this.
-    pub(super) fn new(stock: &'a Stock, test: TriangleTest, threads: &Threads) -> Self {
+    pub(super) fn new(
+        session: &Session,
+        stock: &'a Stock,
+        test: TriangleTest,
+        threads: &Threads,
+    ) -> Result<Self, Cancelled> {
         let primitives = stock.prepared.geometry().primitives();
-        let kd = |split| threads.seconds(|| Structure::Kd(KdTree::build(primitives, split)));
+        let stop = || session.cancel.is_cancelled();
+        let kd = |split| threads.seconds(|| Structure::Kd(KdTree::build_until(primitives, split, &stop)));
         let (grid, grid_seconds) = threads.seconds(|| Structure::Grid(Grid::build(primitives)));
         let ((median, median_seconds), (sah, sah_seconds)) = (kd(Split::Median), kd(Split::Sah));
-        Self {
+        // A tree that was not finished must not be measured.
+        session.go_on()?;
+        Ok(Self {
             stock,
             objects: Objects::new(primitives, test),
             naive: Structure::Naive,
@@ -48,7 +56,7 @@ impl<'a> Classics<'a> {
             median,
             sah,
             build_seconds: [grid_seconds, median_seconds, sah_seconds],
-        }
+        })
     }
 
     fn caster<'s>(&'s self, structure: &'s Structure, walk: Walk, math: Math) -> Classic<'s> {
@@ -61,11 +69,11 @@ impl<'a> Classics<'a> {
     pub(super) fn count(
         &self,
         session: &Session,
-        structure: &Structure,
+        (structure, walk): (&Structure, Walk),
         prepared: &Prepared,
         settings: &Settings,
     ) -> Result<Statistics, Cancelled> {
-        let classic = Classic { prepared, ..self.caster(structure, Walk::Stack, Math::sse()) };
+        let classic = Classic { prepared, ..self.caster(structure, walk, Math::sse()) };
         let (execution, rect) = (Execution::default(), PixelRect::whole(settings.size));
         let work = || render_classic(&classic, settings, &execution, &rect, &Silent, session.cancel, &Unwatched);
         Ok(session.several.seconds(work).0?.statistics)
@@ -107,12 +115,9 @@ impl<'a> Classics<'a> {
             one("SSE math", &self.naive, sequential, sse),
             one("grid + SSE", &self.grid, sequential, sse),
             one("median kd-tree + SSE", &self.median, sequential, sse),
-            Contestant {
-                spread: Spread::BandsOrTiles(RAY_TILE),
-                ..tree("kd-tree + SSE", sequential, Region::Scanline)
-            },
+            Contestant { spread: Spread::Bands, ..tree("kd-tree + SSE", sequential, Region::Scanline) },
             Contestant { spread: Spread::Bands, ..tree("kd-tree + SSE + region", sequential, REGION) },
-            Contestant { spread: Spread::BandsOrTiles(RAY_TILE), ..tree("the same, stack walk", Walk::Stack, REGION) },
+            Contestant { spread: Spread::Bands, ..tree("the same, stack walk", Walk::Stack, REGION) },
         ]
     }
 
@@ -153,22 +158,26 @@ pub(super) fn ours<'a>(
     Contestant { name, of_paper: false, bound: Bound::Equal, threads, spread, render: Box::new(render) }
 }
 
-/// What came after the paper, one step after the other.
+/// What the default renderer is called in tables, before its instruction set.
+pub(super) const BEST: &str = "streams + frusta";
+
+/// What came after the paper, one step after the other; by the widest instruction set where none is named.
 pub(super) fn ladder<'a>(session: &'a Session, stock: &'a Stock) -> Vec<Contestant<'a>> {
     let best = Execution::default();
     let one = |name: &str, execution| ours(session, stock, name, execution, &session.one);
     let mut all = vec![
         one("wide tree, ray by ray", Execution { method: Method::Recursive, walk: WalkKind::Single, ..best }),
-        one("batches, single walk", Execution { walk: WalkKind::Single, ..best }),
-        one("batches, stream walk", Execution { walk: WalkKind::Stream, ..best }),
+        one("batches, each ray alone", Execution { walk: WalkKind::Single, ..best }),
+        one("batches, streams", Execution { walk: WalkKind::Stream, ..best }),
     ];
     // The last one is the default.
     for level in Level::available() {
-        all.push(one(&format!("+ packets, {level}"), Execution { level, ..best }));
+        all.push(one(&format!("{BEST}, {level}"), Execution { level, ..best }));
     }
-    if session.effort.threads > 1 {
-        let name = format!("+ {} threads", session.effort.threads);
-        all.push(ours(session, stock, name, best, &session.several));
+    let threads = session.effort.threads;
+    if threads > 1 {
+        let all_threads = ours(session, stock, format!("the same, {threads} threads"), best, &session.several);
+        all.push(Contestant { spread: Spread::Whole, ..all_threads });
     }
     all
 }

@@ -56,7 +56,7 @@ fn scene(session: &Session, count: u32, span: [f64; 2], all: &mut Vec<Times>) ->
     let reference = stock.reference(session)?;
     let stage = Stage { scene: &stock.name, reference: &reference, span };
     let regions = regions(session);
-    let classics = Classics::new(&stock, TriangleTest::Watertight, &session.one);
+    let classics = Classics::new(session, &stock, TriangleTest::Watertight, &session.one)?;
     let contestants: Vec<Contestant> = regions.iter().flat_map(|region| both(session, &classics, region)).collect();
     let (seconds, outcome) = contest(session, &stage, &contestants);
     let columns = contestants.len() / regions.len();

@@ -1,6 +1,6 @@
 //! Renderers that compute the same picture, timed in turn and checked.
 
-use super::{Bound, Check, Measured, Reference, Sample, Threads, interleaved};
+use super::{Bound, Check, Measured, Reference, Rounds, Sample, Threads, interleaved};
 use crate::session::Session;
 use rayon::prelude::*;
 use whitted::math::Vec3f;
@@ -23,10 +23,10 @@ impl From<Frame> for Rendered {
 pub(crate) enum Spread {
     /// Square tiles of this side, in pixels.
     Tiles(u32),
-    /// Bands across the picture, as high as a region, or nothing at all: for what depends on the order of pixels.
+    /// Bands across the picture, as high as a region, however long one takes: for what depends on the order of pixels.
     Bands,
-    /// Bands, or where even one takes too long, tiles.
-    BandsOrTiles(u32),
+    /// All pixels all the same: for several threads, which a few tiles could not share evenly.
+    Whole,
 }
 
 /// Renders a rectangle of the picture.
@@ -57,10 +57,9 @@ pub(crate) fn contest(
     contestants: &[Contestant],
 ) -> (Vec<Option<Measured>>, Result<(), Cancelled>) {
     let mut entered = Vec::new();
-    for (index, contestant) in contestants.iter().enumerate() {
+    for contestant in contestants {
         match prepare(session, stage, contestant) {
-            Ok(Some(sample)) => entered.push(Entry { index, contestant, sample, factor: 1.0 }),
-            Ok(None) => {}
+            Ok(sample) => entered.push(Entry { contestant, sample, factor: 1.0 }),
             Err(cancelled) => return (vec![None; contestants.len()], Err(cancelled)),
         }
     }
@@ -72,35 +71,27 @@ pub(crate) fn contest(
         session.at(stage.span[0] + part * (stage.span[1] - stage.span[0]), &what)?;
         entry.run(session, stage, round == 0)
     });
-    let mut measured = vec![None; contestants.len()];
-    for (entry, rounds) in entered.iter().zip(taken) {
-        measured[entry.index] = rounds.measured().map(|m| m.extrapolated(entry.factor, entry.sample.part));
-    }
-    (measured, outcome)
+    let whole = |(entry, rounds): (&Entry, Rounds)| {
+        rounds.measured().map(|measured| measured.extrapolated(entry.factor, entry.sample.part))
+    };
+    (entered.iter().zip(taken).map(whole).collect(), outcome)
 }
 
 /// Gives the same bands to all of one kind that trace bands, as many as the slowest of them can: a picture's parts differ,
 /// and so do its orders of pixels, but never both at once.
 fn share_bands(session: &Session, entered: &mut [Entry]) {
-    let size = session.effort.size;
-    let is_banded = |entry: &Entry| entry.sample.rects.iter().all(|rect| rect.width == size[0]);
     for of_paper in [true, false] {
-        let mut kind: Vec<&mut Entry> = entered
-            .iter_mut()
-            .filter(|entry| {
-                entry.contestant.of_paper == of_paper && !matches!(entry.contestant.spread, Spread::Tiles(_))
-            })
-            .filter(|entry| is_banded(entry))
-            .collect();
+        let is_of_kind = |entry: &&mut Entry| {
+            entry.contestant.of_paper == of_paper && matches!(entry.contestant.spread, Spread::Bands)
+        };
+        let mut kind: Vec<&mut Entry> = entered.iter_mut().filter(is_of_kind).collect();
         let least = kind.iter().map(|entry| entry.sample.part).fold(1.0, f64::min);
-        kind.iter_mut().for_each(|entry| entry.sample = Sample::bands(size, least));
+        kind.iter_mut().for_each(|entry| entry.sample = Sample::bands(session.effort.size, least));
     }
 }
 
 /// A contestant with the pixels that it traces.
 struct Entry<'a> {
-    /// Its place among all.
-    index: usize,
     contestant: &'a Contestant<'a>,
     sample: Sample,
     /// From the rays of the sample to those of the whole picture.
@@ -136,27 +127,96 @@ fn trace(contestant: &Contestant, sample: &Sample) -> (Result<Vec<Rendered>, Can
     contestant.threads.seconds(|| sample.rects.par_iter().map(|rect| (contestant.render)(rect)).collect())
 }
 
-/// Seconds beyond the allowance, as a multiple of it, that a single band may take.
-const PATIENCE: f64 = 8.0;
-
-/// As many pixels as the contestant traces in the time that it is given; `None` if it cannot take part.
-fn prepare(session: &Session, stage: &Stage, contestant: &Contestant) -> Result<Option<Sample>, Cancelled> {
+/// As many pixels as the contestant traces in the time that it is given.
+fn prepare(session: &Session, stage: &Stage, contestant: &Contestant) -> Result<Sample, Cancelled> {
     session.at(stage.span[0], &format!("{}, {}", stage.scene, contestant.name))?;
     let size = session.effort.size;
-    let tile = match contestant.spread {
-        Spread::Tiles(side) | Spread::BandsOrTiles(side) => side,
-        Spread::Bands => TRIAL_TILE,
+    let part = |tile| -> Result<f64, Cancelled> {
+        let (parts, seconds) = trace(contestant, &Sample::tiles(size, tile, 0.0));
+        Ok(session.effort.seconds / (seconds * per_ray(stage, &parts?)))
     };
-    let (parts, seconds) = trace(contestant, &Sample::tiles(size, tile, 0.0));
-    let whole = seconds * per_ray(stage, &parts?);
-    let part = session.effort.seconds / whole;
-    let bands = || (part * PATIENCE * f64::from(size[1]) >= f64::from(Sample::BAND)).then(|| Sample::bands(size, part));
     Ok(match contestant.spread {
-        Spread::Tiles(side) => Some(Sample::tiles(size, side, part)),
-        Spread::Bands => bands(),
-        Spread::BandsOrTiles(side) => Some(bands().unwrap_or_else(|| Sample::tiles(size, side, part))),
+        Spread::Tiles(side) => Sample::tiles(size, side, part(side)?),
+        Spread::Bands => Sample::bands(size, part(TRIAL_TILE)?),
+        Spread::Whole => Sample::whole(size),
     })
 }
 
-/// Side of the tile by which the cost of a contestant is estimated, in pixels.
+/// Side of the tile by which the cost of a contestant that traces bands is estimated, in pixels.
 const TRIAL_TILE: u32 = 16;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Effort, Watch};
+    use whitted::render::{Cancel, Image};
+
+    struct Unwatched;
+
+    impl Watch for Unwatched {
+        fn at(&self, _: f64, _: &str) {}
+    }
+
+    /// A picture whose pixels are their places, except for one, and some rays for each.
+    fn picture(rect: &PixelRect, wrong: Option<[u32; 2]>) -> Rendered {
+        let color = |pixel: [u32; 2]| {
+            let [x, y] = pixel.map(|c| c as f32);
+            Vec3f::new(x, y, if wrong == Some(pixel) { 1.0 } else { 0.0 })
+        };
+        let statistics = Statistics { camera_rays: rect.len() as u64, ..Statistics::default() };
+        Rendered { pixels: rect.pixels().map(color).collect(), statistics }
+    }
+
+    fn reference(size: [u32; 2]) -> Reference {
+        let rect = PixelRect::whole(size);
+        let Rendered { pixels, statistics } = picture(&rect, None);
+        let image = Image { width: size[0], height: size[1], pixels };
+        let (first, supersampled, apron) = (Vec::new(), Vec::new(), Statistics::default());
+        Reference { frame: Frame { rect, image, first, supersampled, statistics, apron } }
+    }
+
+    #[test]
+    fn one_wrong_pixel_is_found_whatever_part_is_traced() {
+        let effort = Effort { size: [64, 192], rounds: 3, ..Effort::quick() };
+        let cancel = Cancel::new();
+        let session = Session::new(&effort, &Unwatched, &cancel).unwrap();
+        let reference = reference(effort.size);
+        let stage = Stage { scene: "places", reference: &reference, span: [0.0, 1.0] };
+        let contestant = |name: &str, spread, wrong| Contestant {
+            of_paper: true,
+            name: name.to_owned(),
+            bound: Bound::Equal,
+            threads: &session.one,
+            spread,
+            render: Box::new(move |rect| Ok(picture(rect, wrong))),
+        };
+        let all = [
+            contestant("right", Spread::Tiles(8), None),
+            contestant("wrong", Spread::Whole, Some([63, 191])),
+            contestant("wrong in a band", Spread::Bands, Some([5, 100])),
+        ];
+        let (measured, outcome) = contest(&session, &stage, &all);
+        assert_eq!(outcome, Ok(()));
+        assert!(
+            measured.iter().all(|measured| measured.is_some_and(|m| m.rounds == 3 && m.traced > 0.0)),
+            "{measured:?}"
+        );
+        let differing: Vec<(String, usize)> =
+            session.checks().into_iter().map(|check| (check.variant, check.differing)).collect();
+        assert_eq!(differing, [("right".into(), 0), ("wrong".into(), 1), ("wrong in a band".into(), 1)]);
+        assert!(!session.checks().iter().all(Check::holds));
+    }
+
+    #[test]
+    fn a_part_is_extrapolated_by_rays() {
+        let effort = Effort { size: [640, 480], ..Effort::quick() };
+        let cancel = Cancel::new();
+        let session = Session::new(&effort, &Unwatched, &cancel).unwrap();
+        let reference = reference(effort.size);
+        let stage = Stage { scene: "places", reference: &reference, span: [0.0, 1.0] };
+        let tile = picture(&PixelRect { x: 0, y: 0, width: 64, height: 48 }, None);
+        assert_eq!(per_ray(&stage, &[tile]), 100.0);
+        cancel.cancel();
+        assert!(session.at(0.0, "stopped").is_err());
+    }
+}

@@ -26,7 +26,7 @@ pub(crate) fn spaced(count: u64) -> String {
 
 /// A part of one as percent.
 pub(crate) fn percent(part: f64) -> String {
-    format!("{} %", number(100.0 * part))
+    format!("{}\u{202f}%", number(100.0 * part))
 }
 
 /// `1 pixel`, `2 pixels`.
@@ -75,6 +75,6 @@ mod tests {
             assert_eq!(number(value), text, "{value}");
         }
         assert_eq!(spaced(1_000_000), "1\u{202f}000\u{202f}000");
-        assert_eq!((percent(0.005), plural(1, "ray")), ("0.500 %".to_owned(), "1 ray".to_owned()));
+        assert_eq!((percent(0.005), plural(1, "ray")), ("0.500\u{202f}%".to_owned(), "1 ray".to_owned()));
     }
 }

@@ -114,7 +114,7 @@ impl Block {
 
 impl Drawing {
     fn to_html(&self) -> Markup {
-        html! { figure { (PreEscaped(self.inline())) figcaption { (self.caption) } } }
+        html! { figure { (PreEscaped(self.inline())) figcaption { span { (self.caption) } } } }
     }
 }
 
@@ -125,7 +125,7 @@ impl Picture {
         html! {
             figure {
                 img src=(data) alt=(self.alt) width=(width) height=(height);
-                figcaption { (self.caption) }
+                figcaption { span { (self.caption) } }
             }
         }
     }
@@ -139,12 +139,12 @@ impl Table {
         html! {
             div.scroll.tall[self.rows.len() > TALL] tabindex="0" {
                 table {
-                    caption { (self.caption) }
+                    caption { span { (self.caption) } }
                     thead {
                         tr {
                             th scope="col" { (self.corner) }
-                            @for column in &self.columns {
-                                th scope="col" { (column.name) @if !column.unit.is_empty() { small { (column.unit) } } }
+                            @for (index, column) in self.columns.iter().enumerate() {
+                                th.words[self.has_words(index)] scope="col" { (column.name) @if !column.unit.is_empty() { small { (column.unit) } } }
                             }
                         }
                     }
@@ -152,6 +152,12 @@ impl Table {
                 }
             }
         }
+    }
+}
+
+impl Table {
+    fn has_words(&self, column: usize) -> bool {
+        self.rows.first().is_some_and(|row| matches!(row.cells.get(column), Some(Cell::Text(_))))
     }
 }
 
@@ -197,7 +203,7 @@ pub(super) fn median(measured: &Measured) -> String {
 
 /// Spread and part of the pixels, where there is something to say.
 pub(super) fn details(measured: &Measured) -> Vec<String> {
-    let spread = (measured.rounds > 1).then(|| format!("{} – {}", number(measured.low), number(measured.high)));
+    let spread = (measured.rounds > 1).then(|| format!("{}\u{a0}– {}", number(measured.low), number(measured.high)));
     let part = (measured.traced < 1.0).then(|| format!("{} traced", percent(measured.traced)));
     spread.into_iter().chain(part).collect()
 }
