@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
-use whitted::render::{Cancel, Cancelled, Execution, Silent, render};
+use whitted::render::{Cancel, Cancelled, Execution, PixelRect, Renderer, Silent, Unwatched};
 use whitted::scene::{Antialias, Prepared, Settings, Shadows};
 use whitted::tree::BuildOptions;
 
@@ -38,10 +38,11 @@ pub(super) fn run(name: &str, text: &str) -> Result<Vec<Value>, Box<dyn Error>> 
     for threads in THREADS {
         pools.push((rayon::ThreadPoolBuilder::new().num_threads(threads).build()?, Vec::new()));
     }
+    let renderer = Renderer::default();
     let neighbours = Neighbours::watch();
     for round in 0..WARM_UP + FRAMES {
         for (pool, frames) in &mut pools {
-            let frame = pool.install(|| timed(&prepared, &settings))?;
+            let frame = pool.install(|| timed(&renderer, &prepared, &settings))?;
             if round >= WARM_UP {
                 frames.push(frame);
             }
@@ -51,9 +52,11 @@ pub(super) fn run(name: &str, text: &str) -> Result<Vec<Value>, Box<dyn Error>> 
     Ok(THREADS.iter().zip(&pools).map(|(&threads, (_, frames))| row(name, threads, frames, others)).collect())
 }
 
-fn timed(prepared: &Prepared, settings: &Settings) -> Result<Frame, Cancelled> {
+fn timed(renderer: &Renderer, prepared: &Prepared, settings: &Settings) -> Result<Frame, Cancelled> {
     let (start, cpu) = (Instant::now(), ProcessTime::now());
-    render(prepared, settings, &Execution::default(), &Silent, &Cancel::new())?;
+    let execution = Execution { first_samples: false, ..Execution::default() };
+    let whole = PixelRect::whole(settings.size);
+    renderer.recycle(renderer.render(prepared, settings, &execution, &whole, &Silent, &Cancel::new(), &Unwatched)?);
     Ok(Frame { wall: start.elapsed().as_secs_f64(), cpu: cpu.elapsed().as_secs_f64() })
 }
 

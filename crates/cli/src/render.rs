@@ -142,7 +142,8 @@ impl Job<'_> {
     fn trace(&self, cancel: &Cancel, watch: &Stopwatch) -> Result<Frame, Failure> {
         let Self { prepared, classic, ref rectangle, scene, arguments } = *self;
         let display = Display::new(arguments.verbosity.quiet);
-        let (settings, execution) = (&scene.settings, arguments.execution.execution());
+        let settings = &scene.settings;
+        let execution = Execution { first_samples: !arguments.aov.is_empty(), ..arguments.execution.execution() };
         let frame = match classic {
             None => render_rect(prepared, settings, &execution, rectangle, &display, cancel, watch),
             Some(built) => {

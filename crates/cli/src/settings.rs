@@ -61,6 +61,7 @@ impl ExecutionArguments {
                 Some(WalkChoice::Wide(walk)) => walk,
                 _ => default.walk,
             },
+            ..default
         }
     }
 

@@ -223,6 +223,29 @@ fn memory_that_was_used_before_changes_nothing_and_the_sink_hears_of_every_pixel
             let fresh = render_rect(&prepared, &settings, &execution, &rect, &Silent, &Cancel::new(), &Unwatched);
             assert_same(&fresh.expect("not cancelled"), &frame, &format!("scene {seed}"));
             assert_eq!(told.pixels.into_inner().unwrap(), frame.image.pixels, "scene {seed}");
+            renderer.recycle(frame);
+        }
+    }
+}
+
+#[test]
+fn first_samples_that_nobody_wants_are_missed_by_nobody() {
+    let renderer = Renderer::default();
+    let whole = PixelRect::whole(settings(0).size);
+    for (seed, antialias) in (60..).zip([Antialias::Off, Antialias::Uniform(3), Antialias::Paper, Antialias::Edge]) {
+        let (scene, settings) = (random_scene(seed), Settings { antialias, ..settings(seed) });
+        let prepared = prepare(&scene, TreeKind::Best);
+        let wanted = picture(&prepared, &settings, &Execution::default());
+        for method in [Method::Wavefront, Method::Recursive] {
+            let execution = Execution { first_samples: false, method, ..Execution::default() };
+            let frame =
+                renderer.render(&prepared, &settings, &execution, &whole, &Silent, &Cancel::new(), &Unwatched).unwrap();
+            let needs_them = matches!(antialias, Antialias::Paper | Antialias::Edge);
+            assert_eq!(frame.first.len(), if needs_them { whole.len() } else { 0 });
+            let first = wanted.first.clone();
+            let given_back = Frame { first, ..frame };
+            assert_same(&wanted, &given_back, &format!("{antialias:?} {method:?}"));
+            renderer.recycle(given_back);
         }
     }
 }

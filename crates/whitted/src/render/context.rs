@@ -4,7 +4,7 @@ use super::execution::Execution;
 use super::progress::Cancel;
 use crate::classic::Caster;
 use crate::math::Vec3f;
-use crate::scene::{CameraRays, Geometry, Look, Prepared, Settings};
+use crate::scene::{Antialias, CameraRays, Geometry, Look, Prepared, Settings};
 use crate::tree::Query;
 
 /// What every part of a render reads and none changes.
@@ -38,6 +38,11 @@ impl<'a> Context<'a> {
         };
         let camera = CameraRays::new(prepared.look().camera(), settings.size, settings.sampling);
         Self { geometry, look: prepared.look(), settings, execution, cancel, camera, query, caster: None }
+    }
+
+    /// Whether what the first samples see must be kept.
+    pub(super) fn keeps_first_samples(&self) -> bool {
+        self.execution.first_samples || matches!(self.settings.antialias, Antialias::Paper | Antialias::Edge)
     }
 
     /// The material number of a primitive.

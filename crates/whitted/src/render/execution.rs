@@ -13,6 +13,9 @@ pub struct Execution {
     pub method: Method,
     /// The walk through the tree.
     pub walk: crate::tree::WalkKind,
+    /// Whether [`Frame::first`](super::Frame::first) is wanted; what edges need is found in any case. Without it, a picture
+    /// takes a third of the memory.
+    pub first_samples: bool,
 }
 
 impl Default for Execution {
@@ -22,6 +25,7 @@ impl Default for Execution {
             region: Region::Rectangle(64, 64),
             method: Method::Wavefront,
             walk: crate::tree::WalkKind::Auto,
+            first_samples: true,
         }
     }
 }

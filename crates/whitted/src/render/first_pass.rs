@@ -29,13 +29,27 @@ impl FirstSample {
 pub(super) struct FirstPass {
     rect: PixelRect,
     colors: Vec<Vec3f>,
+    /// Empty if only colours are kept.
     samples: Vec<FirstSample>,
 }
 
+/// Memory of a pass that is over.
+#[derive(Debug, Default)]
+pub(super) struct Spare {
+    pub(super) colors: Vec<Vec3f>,
+    pub(super) samples: Vec<FirstSample>,
+}
+
 impl FirstPass {
-    /// A pass over `rect` that has seen nothing yet.
-    pub(super) fn new(rect: PixelRect) -> Self {
-        Self { rect, colors: filled(rect.len(), Vec3f::ZERO), samples: filled(rect.len(), FirstSample::NOTHING) }
+    /// A pass over `rect` that has seen nothing yet; it keeps no more than colours unless `keeps_samples`.
+    pub(super) fn new(rect: PixelRect, keeps_samples: bool, spare: Spare) -> Self {
+        let samples = if keeps_samples { rect.len() } else { 0 };
+        let Spare { colors, samples: spare } = spare;
+        Self {
+            rect,
+            colors: filled(colors, rect.len(), Vec3f::ZERO),
+            samples: filled(spare, samples, FirstSample::NOTHING),
+        }
     }
 
     /// The pixels that it covers.
@@ -57,8 +71,9 @@ impl FirstPass {
     pub(super) fn rows(&mut self) -> PassRows<'_> {
         // Not zero, which has no chunks: there are no rows then either.
         let width = self.rect.width.max(1) as usize;
-        let rows = self.colors.chunks_mut(width).zip(self.samples.chunks_mut(width));
-        PassRows { rect: self.rect, rows: rows.map(|(colors, samples)| Mutex::new(Row { colors, samples })).collect() }
+        let mut samples = self.samples.chunks_mut(width);
+        let row = |colors| Mutex::new(Row { colors, samples: samples.next().unwrap_or_default() });
+        PassRows { rect: self.rect, rows: self.colors.chunks_mut(width).map(row).collect() }
     }
 
     /// The colours and the samples of `rect`, which lies in the rectangle, row by row.
@@ -66,16 +81,21 @@ impl FirstPass {
         if self.rect == *rect {
             return (self.colors, self.samples);
         }
-        (cut(&self.colors, &self.rect, rect), cut(&self.samples, &self.rect, rect))
+        let samples = if self.samples.is_empty() { Vec::new() } else { cut(&self.samples, &self.rect, rect) };
+        (cut(&self.colors, &self.rect, rect), samples)
     }
 }
 
-/// `len` copies of a value in large pages: pages of the usual size cost as much as tracing simple pictures.
-fn filled<T: Copy>(len: usize, value: T) -> Vec<T> {
-    let mut all = Vec::with_capacity(len);
-    advise_huge_pages(all.spare_capacity_mut());
-    all.resize(len, value);
-    all
+/// `len` copies of a value, in `memory` if that is large enough, else in large pages: pages of the usual size cost as much as
+/// tracing simple pictures.
+fn filled<T: Copy>(mut memory: Vec<T>, len: usize, value: T) -> Vec<T> {
+    memory.clear();
+    if memory.capacity() < len {
+        memory = Vec::with_capacity(len);
+        advise_huge_pages(memory.spare_capacity_mut());
+    }
+    memory.resize(len, value);
+    memory
 }
 
 /// The part of `all`, which covers `whole`, that covers `part`.
@@ -101,14 +121,17 @@ struct Row<'a> {
 }
 
 impl PassRows<'_> {
-    /// Fill in colours and samples of `part`, which lies in the rectangle, given row by row.
+    /// Fill in colours and samples of `part`, which lies in the rectangle, given row by row; samples only if they are kept.
     pub(super) fn set(&self, part: &PixelRect, colors: impl Iterator<Item = Vec3f>, samples: &[FirstSample]) {
         let (mut colors, width) = (colors, part.width as usize);
         let left = (part.x - self.rect.x) as usize;
-        for (y, samples) in (part.y - self.rect.y..).zip(samples.chunks_exact(width)) {
+        let mut samples = samples.chunks_exact(width);
+        for y in part.y - self.rect.y..part.y - self.rect.y + part.height {
             // A panic elsewhere leaves the row usable: it holds plain numbers.
             let mut row = self.rows[y as usize].lock().unwrap_or_else(PoisonError::into_inner);
-            row.samples[left..left + width].copy_from_slice(samples);
+            if let Some(samples) = samples.next() {
+                row.samples[left..left + width].copy_from_slice(samples);
+            }
             row.colors[left..left + width].iter_mut().zip(&mut colors).for_each(|(to, color)| *to = color);
         }
     }

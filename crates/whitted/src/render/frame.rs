@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::edges::{EdgeRule, flagged};
 use super::execution::{Execution, Method};
-use super::first_pass::{FirstPass, FirstSample};
+use super::first_pass::{FirstPass, FirstSample, Spare};
 use super::image::Image;
 use super::probe::{Phase, Probe, Unwatched, watched};
 use super::progress::{Cancel, Cancelled, Progress};
@@ -14,6 +14,7 @@ use crate::classic::Caster;
 use crate::scene::{Antialias, Prepared, Settings};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// A rendered picture, or a rectangle of one.
 #[derive(Clone, Debug)]
@@ -22,7 +23,8 @@ pub struct Frame {
     pub rect: PixelRect,
     /// Its pixels.
     pub image: Image,
-    /// What the first sample of every pixel saw, row by row.
+    /// What the first sample of every pixel saw, row by row; empty if neither [`Execution::first_samples`] nor edges
+    /// wanted to know.
     pub first: Vec<FirstSample>,
     /// Whether a pixel got more than one sample, row by row: the paper's figure 4.
     pub supersampled: Vec<bool>,
@@ -103,6 +105,7 @@ pub fn render_classic<P: Probe>(
 #[derive(Debug, Default)]
 pub struct Renderer {
     workspaces: Workspaces,
+    spare: Mutex<Spare>,
 }
 
 impl Renderer {
@@ -123,6 +126,16 @@ impl Renderer {
         self.render_in(Context::new(prepared, settings, execution, cancel), rect, progress, probe)
     }
 
+    /// Take back the memory of a picture that nobody needs any more, for the next one.
+    pub fn recycle(&self, frame: Frame) {
+        let spare = Spare { colors: frame.image.pixels, samples: frame.first };
+        *self.spare.lock().unwrap_or_else(PoisonError::into_inner) = spare;
+    }
+
+    fn take_spare(&self) -> Spare {
+        std::mem::take(&mut self.spare.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
     fn render_in<P: Probe>(
         &self,
         context: Context<'_>,
@@ -132,11 +145,11 @@ impl Renderer {
     ) -> Result<Frame, Cancelled> {
         let rect = rect.intersection(&PixelRect::whole(context.settings.size));
         if rect.is_empty() {
-            let nothing = FirstPass::new(PixelRect::EMPTY);
+            let nothing = FirstPass::new(PixelRect::EMPTY, false, Spare::default());
             return Ok(Frame::of(nothing, rect, Statistics::default(), Statistics::default()));
         }
         let rule = EdgeRule::new(context.settings);
-        let job = Job { context, rule, progress, probe, workspaces: &self.workspaces };
+        let job = Job { context, rule, progress, probe, renderer: self };
         let (pass, statistics, apron) = job.first_pass(&rect)?;
         let refined = if job.rule.never() { Vec::new() } else { job.refine(&pass, &rect)? };
         let mut frame = Frame::of(pass, rect, statistics, apron);
@@ -151,7 +164,7 @@ struct Job<'a, P> {
     rule: EdgeRule,
     progress: &'a dyn Progress,
     probe: &'a P,
-    workspaces: &'a Workspaces,
+    renderer: &'a Renderer,
 }
 
 impl<P: Probe> Job<'_, P> {
@@ -165,7 +178,7 @@ impl<P: Probe> Job<'_, P> {
         let kind = self.context.execution.region;
         let around = rect.strips_to(&covered).into_iter().flat_map(|strip| strip.regions(kind));
         let regions: Vec<PixelRect> = rect.regions(kind).into_iter().chain(around).collect();
-        let mut pass = FirstPass::new(covered);
+        let mut pass = FirstPass::new(covered, self.context.keeps_first_samples(), self.renderer.take_spare());
         let rows = pass.rows();
         let results = self.for_each(1, &regions, |workspace, region| {
             let is_inside = rect.contains([region.x, region.y]);
@@ -208,7 +221,7 @@ impl<P: Probe> Job<'_, P> {
         regions
             .par_iter()
             .map(|region| {
-                let result = self.workspaces.with(|workspace| {
+                let result = self.renderer.workspaces.with(|workspace| {
                     // What was counted for a picture that is not finished must not appear in the next one.
                     work(workspace, region).inspect_err(|_| _ = workspace.take_statistics())
                 })?;
@@ -224,7 +237,7 @@ impl Frame {
     fn of(pass: FirstPass, rect: PixelRect, statistics: Statistics, apron: Statistics) -> Self {
         let (pixels, first) = pass.into_part(&rect);
         let image = Image { width: rect.width, height: rect.height, pixels };
-        Self { rect, image, supersampled: vec![false; first.len()], first, statistics, apron }
+        Self { rect, image, supersampled: vec![false; rect.len()], first, statistics, apron }
     }
 
     /// Take over supersampled pixels.

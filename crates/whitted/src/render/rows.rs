@@ -33,6 +33,10 @@ const LINE: usize = 64;
 /// first-level cache, which has fewer ways than records have fields.
 const STAGGER: usize = 5 * LINE / size_of::<f32>();
 
+/// Records for which there is room as soon as there is one: most batches are as large, pages that nobody writes to cost
+/// nothing, and growing writes to each twice.
+const LEAST: usize = 4096;
+
 impl<const F: usize, const U: usize> Rows<F, U> {
     #[inline(always)]
     pub(super) fn len(&self) -> usize {
@@ -116,7 +120,7 @@ impl<const F: usize, const U: usize> Rows<F, U> {
     #[cold]
     #[inline(never)]
     fn grow(&mut self) {
-        let stride = (self.len + 2 * BLOCK).next_power_of_two() + STAGGER;
+        let stride = (self.len + 2 * BLOCK).next_power_of_two().max(LEAST) + STAGGER;
         let floats = |row| self.floats(row);
         let (new_floats, first_float) = spread::<_, F>(std::array::from_fn(floats), stride);
         let integers = |row| self.integers(row);

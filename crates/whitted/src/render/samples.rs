@@ -12,6 +12,7 @@ use simd::{F32Lanes, MaskLanes};
 #[derive(Debug, Default)]
 pub(super) struct Samples {
     film: Film,
+    /// Empty if nobody wants to know.
     first: Vec<FirstSample>,
     /// Counts over all batches since they were last taken.
     pub(super) statistics: Statistics,
@@ -19,10 +20,10 @@ pub(super) struct Samples {
 
 impl Samples {
     /// Start over with `len` samples that saw nothing yet. The statistics go on.
-    pub(super) fn reset(&mut self, len: usize) {
+    pub(super) fn reset(&mut self, len: usize, keeps_first: bool) {
         self.film.reset(len);
         self.first.clear();
-        self.first.resize(len, FirstSample::NOTHING);
+        self.first.resize(if keeps_first { len } else { 0 }, FirstSample::NOTHING);
     }
 
     /// Add light to a sample.
@@ -53,6 +54,9 @@ impl Samples {
         normal: Vec3<L>,
         depth: L,
     ) {
+        if self.first.is_empty() {
+            return;
+        }
         let (samples, primitives, depths) = (array::<L>(sample), array::<L>(primitive), array_f32(depth));
         let rows = [array_f32(normal.x), array_f32(normal.y), array_f32(normal.z)];
         let [x, y, z] = [rows[0].as_ref(), rows[1].as_ref(), rows[2].as_ref()];
@@ -67,11 +71,14 @@ impl Samples {
     /// Note that secondary rays of the samples of the lanes `mask` were not traced because of their weight.
     #[inline(always)]
     pub(super) fn cut<L: F32Lanes>(&mut self, mask: L::Mask, sample: L::U32) {
+        self.statistics.cut_by_weight += u64::from(mask.bits().count_ones());
+        if self.first.is_empty() {
+            return;
+        }
         let samples = array::<L>(sample);
         for lane in lanes_of(mask.bits()) {
             self.first[samples.as_ref()[lane] as usize].cut = true;
         }
-        self.statistics.cut_by_weight += u64::from(mask.bits().count_ones());
     }
 
     /// The colour of every sample, in order.
@@ -79,7 +86,7 @@ impl Samples {
         self.film.colors()
     }
 
-    /// What every camera ray saw, in the order of samples.
+    /// What every camera ray saw, in the order of samples; empty if that is not kept.
     pub(super) fn first(&self) -> &[FirstSample] {
         &self.first
     }

@@ -146,7 +146,7 @@ impl Workspace {
     ) -> Result<Statistics, Cancelled> {
         self.place(jitter, pixel, 0..samples);
         self.take_statistics();
-        self.samples.reset(self.places.len());
+        self.samples.reset(self.places.len(), true);
         self.recursive.run(context, &self.places, &mut self.samples)?;
         Ok(self.take_statistics())
     }
@@ -161,7 +161,7 @@ impl Workspace {
         recorder: &mut R,
     ) -> Result<Vec<Vec3f>, Cancelled> {
         self.place(jitter, pixel, samples);
-        self.samples.reset(self.places.len());
+        self.samples.reset(self.places.len(), true);
         self.recursive.record(context, &self.places, &mut self.samples, recorder)?;
         Ok(self.samples.colors().collect())
     }
@@ -177,7 +177,7 @@ impl Workspace {
     /// Trace the samples of the batch.
     fn trace<P: Probe>(&mut self, context: &Context, probe: &P) -> Result<(), Cancelled> {
         let Self { wavefront, recursive, samples, places } = self;
-        samples.reset(places.len());
+        samples.reset(places.len(), context.keeps_first_samples());
         samples.statistics.camera_rays += places.len() as u64;
         match context.execution.method {
             Method::Wavefront => wavefront.run(context, places, samples, probe),

@@ -128,6 +128,9 @@ impl std::fmt::Display for AovPicture {
 /// `clock` is asked for [`Aov::Time`] only. `execution` changes nothing but how long it takes. Runs in the current rayon
 /// pool.
 ///
+/// # Panics
+/// If any is wanted of a frame that was rendered without [`Execution::first_samples`] and without edges.
+///
 /// # Errors
 /// If `cancel` was set.
 pub fn aovs(
@@ -161,6 +164,7 @@ pub fn aovs_classic(
 }
 
 fn pictures(wanted: &[Aov], frame: &Frame, context: &Context, clock: Clock) -> Result<Vec<AovPicture>, Cancelled> {
+    assert!(wanted.is_empty() || frame.first.len() == frame.rect.len(), "what the first samples saw was not kept");
     let clock = wanted.contains(&Aov::Time).then_some(clock);
     let costs = match wanted.iter().any(|aov| aov.is_cost()) {
         true => cost::of_pixels(context, frame, clock)?,
