@@ -157,7 +157,8 @@ pub(crate) struct Verbosity {
 pub(crate) struct RenderArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
-    /// Picture to write (.png), or - for a PNG on standard output [default: the scene's name with .png, in this folder]
+    /// Picture to write: .png, .exr with linear colours, or - for a PNG on standard output [default: the scene's name with
+    /// .png, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Write these pictures too, beside the other as NAME.png: masks of importance and supersampling, heat maps of nodes,

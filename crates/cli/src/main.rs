@@ -19,6 +19,7 @@ mod interrupt;
 mod load;
 mod output;
 mod paper;
+mod picture;
 mod progress;
 mod render;
 mod report;

@@ -6,6 +6,7 @@ use crate::exit::Failure;
 use crate::interrupt::{self, stop_if};
 use crate::load::load;
 use crate::output::Target;
+use crate::picture::PictureFormat;
 use crate::progress::Display;
 use crate::report::Report;
 use crate::stopwatch::Stopwatch;
@@ -48,7 +49,7 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     report.tree = classic.as_ref().map_or(prepared.geometry().tree().report(), Built::report);
     let aovs = timed(&mut report.aov, || pool.install(|| job.other_pictures(&frame, cancel)))?;
     timed(&mut report.write, || {
-        write(&frame, &scene, &outputs.picture, cancel)?;
+        outputs.write_picture(&frame, &scene, cancel)?;
         outputs.write_aovs(&aovs, arguments.verbosity.quiet)
     })?;
     tell_summary(arguments, &outputs.picture, rectangle, &report);
@@ -58,6 +59,7 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
 /// Where everything goes, checked.
 struct Outputs {
     picture: Target,
+    format: PictureFormat,
     /// In the order of the arguments.
     aovs: Vec<Target>,
     stats: Option<(Stats, Target)>,
@@ -66,11 +68,7 @@ struct Outputs {
 impl Outputs {
     fn check(arguments: &RenderArguments) -> Result<Self, Failure> {
         let path = arguments.output.clone().unwrap_or_else(|| default_output(arguments));
-        let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-        if !is_png && path.as_os_str() != "-" {
-            let text = format!("cannot write '{}': the format must be one of: .png", path.display());
-            return Err(Failure::Usage(text));
-        }
+        let format = PictureFormat::of(&path)?;
         let picture = Target::check(&path)?;
         let aovs = aov_targets(&arguments.aov, &path)?;
         let stats = arguments.stats.clone().map(|stats| {
@@ -81,7 +79,13 @@ impl Outputs {
             }
             Ok((stats, target))
         });
-        Ok(Self { picture, aovs, stats: stats.transpose()? })
+        Ok(Self { picture, format, aovs, stats: stats.transpose()? })
+    }
+
+    fn write_picture(&self, frame: &Frame, scene: &Scene, cancel: &Cancel) -> Result<(), Failure> {
+        let file = self.format.encode(&frame.image, || frame.image.to_rgb8(&scene.settings))?;
+        stop_if(cancel)?;
+        self.picture.write(&file)
     }
 
     fn write_aovs(&self, pictures: &[AovPicture], quiet: bool) -> Result<(), Failure> {
@@ -170,14 +174,6 @@ impl Job<'_> {
         };
         pictures.map_err(|_cancelled| Failure::Interrupted)
     }
-}
-
-fn write(frame: &Frame, scene: &Scene, target: &Target, cancel: &Cancel) -> Result<(), Failure> {
-    let rgb8 = frame.image.to_rgb8(&scene.settings);
-    let png = formats::png::encode(frame.image.width, frame.image.height, &rgb8);
-    let png = png.map_err(|error| Failure::Io(error.to_string()))?;
-    stop_if(cancel)?;
-    target.write(&png)
 }
 
 fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {

@@ -9,6 +9,7 @@
 //! | `.obj` | mesh with materials (Wavefront OBJ and MTL) | [`load`] |
 //! | `.ply` | mesh | [`load`] |
 //! | `.png` | picture | [`png::encode`] (writes only) |
+//! | `.exr` | picture with linear colours (OpenEXR) | [`exr::encode`] (writes only) |
 //! | `.csv`, `.npy`, `.f32`, `.f32x8` | rays and hits | [`rays::RayReader`], [`rays::HitFormat`] |
 //!
 //! # Invariants
@@ -22,6 +23,7 @@
 
 mod check;
 mod error;
+pub mod exr;
 mod files;
 mod mesh;
 mod nff;
