@@ -3,12 +3,13 @@
 use crate::args::{PictureArguments, SceneArguments, ViewArguments};
 use crate::exit::Failure;
 use crate::output::Target;
+use crate::picture::PictureFormat;
 use formats::{Format, LoadOptions, Loader};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use viewer::script::{self, ScriptFailure, Step};
-use viewer::{Host, Opened, Options, WindowError};
+use viewer::{Host, Opened, Options, Shot, WindowError};
 use whitted::scene::{NamedCamera, Scene};
 
 pub(crate) fn run(arguments: &ViewArguments) -> Result<(), Failure> {
@@ -56,6 +57,9 @@ fn steps(arguments: &ViewArguments) -> Result<Option<Vec<Step>>, Failure> {
         None => Vec::new(),
     };
     if let Some(path) = &arguments.screenshot {
+        if PictureFormat::of(path)? == PictureFormat::Exr {
+            return Err(Failure::Usage("--screenshot saves what is seen, as .png".to_owned()));
+        }
         Target::check(path)?;
         steps.extend([Step::WaitRefined, Step::Screenshot(path.clone())]);
     }
@@ -64,6 +68,24 @@ fn steps(arguments: &ViewArguments) -> Result<Option<Vec<Step>>, Failure> {
 
 fn blame(error: &ScriptFailure) -> Failure {
     Failure::Io(error.to_string())
+}
+
+/// Write what is shown; as EXR it must be light.
+fn write(path: &Path, shot: &Shot<'_>) -> Result<(), Failure> {
+    let file = match (PictureFormat::of(path)?, shot.linear) {
+        (format, Some(image)) => format.encode(image, || shot.rgb8.to_vec())?,
+        (PictureFormat::Png, None) => encode_png(shot)?,
+        (PictureFormat::Exr, None) => {
+            let text = format!("cannot write '{}': only light can be saved as EXR, not another view", path.display());
+            return Err(Failure::Usage(text));
+        }
+    };
+    Target::check(path)?.write(&file)
+}
+
+fn encode_png(shot: &Shot<'_>) -> Result<Vec<u8>, Failure> {
+    let [width, height] = shot.size;
+    formats::png::encode(width, height, shot.rgb8).map_err(|error| Failure::Io(error.to_string()))
 }
 
 /// Names of cameras that no author gave.
@@ -102,10 +124,8 @@ impl Host for Files {
         Ok(Opened { scene, files: loaded.files, warnings })
     }
 
-    fn save(&self, path: &Path, [width, height]: [u32; 2], rgb8: &[u8]) -> Result<(), String> {
-        let png = formats::png::encode(width, height, rgb8).map_err(|error| error.to_string())?;
-        let written = Target::check(path).and_then(|target| target.write(&png));
-        written.map_err(|failure| failure.to_string())
+    fn save(&self, path: &Path, shot: &Shot<'_>) -> Result<(), String> {
+        write(path, shot).map_err(|failure| failure.to_string())
     }
 
     fn write_back(&self, old: &Scene, new: &Scene) -> Result<(), String> {

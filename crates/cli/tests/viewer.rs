@@ -104,6 +104,7 @@ fn a_person_looks_around_edits_and_closes() {
     viewer.wait_until_at_rest();
     viewer.key("Escape");
     viewer.key("Escape");
+    viewer.key("Escape");
     assert_eq!(viewer.exit_code(), 0);
 }
 

@@ -23,8 +23,10 @@ pub enum Action {
     PreviousView,
     /// Print the camera as it is written in a scene file, and copy it.
     CopyCamera,
-    /// Save the finished picture.
+    /// Save the finished picture as it is seen.
     Save,
+    /// Save its linear colours.
+    SaveLight,
     /// Begin or end to record the way of the camera.
     Record,
     /// Show or hide the cheat sheet.
@@ -60,7 +62,7 @@ pub const KEYS: &[(Key, Action, &str)] = &[
     (Key::Up, Action::Reload, "reload the scene"),
     (Key::Char('m'), Action::NextView, "next view (Shift: previous)"),
     (Key::Char('p'), Action::CopyCamera, "copy and print the camera"),
-    (Key::Function(12), Action::Save, "save the picture"),
+    (Key::Function(12), Action::Save, "save the picture (Shift: as EXR)"),
     (Key::Char('r'), Action::Record, "record the camera's way"),
     (Key::Char('h'), Action::Help, "this cheat sheet"),
     (Key::Tab, Action::Panel, "panel"),
@@ -83,7 +85,11 @@ impl Action {
     /// What a pressed key asks for.
     pub fn of(key: Key, shift: bool) -> Option<Self> {
         let action = KEYS.iter().find(|(known, _, _)| *known == key).map(|(_, action, _)| *action)?;
-        Some(if action == Self::NextView && shift { Self::PreviousView } else { action })
+        Some(match action {
+            Self::NextView if shift => Self::PreviousView,
+            Self::Save if shift => Self::SaveLight,
+            _ => action,
+        })
     }
 }
 
@@ -100,5 +106,6 @@ mod tests {
             assert_eq!(Action::of(Key::Char(fly), false), None, "{fly} flies");
         }
         assert_eq!(Action::of(Key::Char('m'), true), Some(Action::PreviousView));
+        assert_eq!(Action::of(Key::Function(12), true), Some(Action::SaveLight));
     }
 }

@@ -43,11 +43,11 @@ mod session;
 mod window;
 
 pub use action::{Action, GESTURES, KEYS, Side};
-pub use host::{Host, Opened};
+pub use host::{Host, Opened, Shot};
 pub use input::{Button, Input, Key, Modifiers};
 pub use opener::Activity;
 pub use options::Options;
 pub use screen::{Finished, Picture, Stage};
-pub use session::{Effect, Inspection, Note, Session, Shown};
+pub use session::{Destination, Effect, Inspection, Note, Session, Shown};
 #[cfg(feature = "window")]
 pub use window::{WindowError, run};

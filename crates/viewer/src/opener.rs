@@ -29,6 +29,8 @@ pub(crate) struct Ready {
     /// How long reading and building took. The latter is zero if nothing had to be built.
     pub(crate) read_time: Duration,
     pub(crate) build_time: Duration,
+    /// When the files were saved, if it was read because they have changed.
+    pub(crate) saved: Option<SystemTime>,
 }
 
 /// What the opener is doing.
@@ -159,10 +161,11 @@ struct Work {
 impl Work {
     fn run(&mut self) {
         let mut is_due = true;
+        let mut changed = false;
         let mut trouble: Option<(Instant, String)> = None;
         while !self.closing.load(Ordering::Relaxed) {
             if is_due {
-                trouble = self.open().err().map(|text| (Instant::now(), text));
+                trouble = self.open(changed).err().map(|text| (Instant::now(), text));
             }
             if let Some((_, text)) = trouble.take_if(|(since, _)| since.elapsed() >= SETTLED) {
                 self.tell(News::Broken(text));
@@ -173,7 +176,7 @@ impl Work {
                 Err(RecvTimeoutError::Disconnected) => return,
             };
             // All of them are asked, so that each remembers how it is.
-            let changed = self.watched.iter_mut().fold(false, |any, file| file.changed() | any);
+            changed = self.watched.iter_mut().fold(false, |any, file| file.changed() | any);
             is_due = ordered || changed;
         }
     }
@@ -189,13 +192,16 @@ impl Work {
         (self.wake)();
     }
 
-    /// Read the scene and make it ready.
-    fn open(&mut self) -> Result<(), String> {
+    /// Read the scene, perhaps because its files have changed, and make it ready.
+    fn open(&mut self, changed: bool) -> Result<(), String> {
         let start = Instant::now();
         self.set(Activity::Reading(start));
         let result = self.host.open().and_then(|opened| self.prepare(opened, start.elapsed()));
+        let saved = self.watched.iter().filter_map(|watched| watched.stamp).map(|(time, _)| time).max();
         // Before it is idle: whoever sees it idle has heard of what it did.
-        let told = result.map(|ready| self.tell(News::Ready(Box::new(ready))));
+        let told = result.map(|ready| {
+            self.tell(News::Ready(Box::new(Ready { saved: saved.filter(|_| changed), ..ready })));
+        });
         self.set(Activity::Idle);
         told
     }
@@ -215,7 +221,7 @@ impl Work {
             Some(ready) => (ready.bounds, Duration::ZERO),
             None => (scene.bounds().map(|(lo, hi)| [lo, hi]), start.elapsed()),
         };
-        let ready = Ready { scene: Arc::new(scene), prepared, bounds, warnings, read_time, build_time };
+        let ready = Ready { scene: Arc::new(scene), prepared, bounds, warnings, read_time, build_time, saved: None };
         self.current = Some(ready.clone());
         Ok(ready)
     }

@@ -2,7 +2,7 @@
 
 use crate::enlarge::{enlarge, pack};
 use crate::quality::{Draft, Quality};
-use crate::screen::{Finished, Screen, Stage};
+use crate::screen::{Finished, Screen, Stage, copy_rect};
 use rayon::ThreadPool;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, OnceLock, PoisonError};
@@ -84,6 +84,7 @@ impl Painter {
             pool,
             execution,
             renderer: Renderer::default(),
+            spare: Vec::new(),
             finished: None,
             scene: None,
         };
@@ -159,6 +160,8 @@ struct Work {
     execution: Execution,
     quality: Quality,
     renderer: Renderer,
+    /// The pixels of the picture before, whose memory is used for the next: fresh memory costs as much as enlarging.
+    spare: Vec<u32>,
     /// What was finished last: another view of it needs no other render.
     finished: Option<Arc<Finished>>,
     /// The scene that was painted last with the camera of the moment, and the one that it was made from.
@@ -226,8 +229,9 @@ impl Work {
         loop {
             let start = Instant::now();
             let draft = self.quality.draft(wanted.settings.size, wanted.settings.depth);
-            let deadline = Deadline { end: self.quality.patience().map(|p| start + p), ..Deadline::default() };
             let settings = draft_settings(&wanted.settings, &draft);
+            let end = self.quality.patience().map(|patience| start + patience);
+            let deadline = Deadline::new(end, &settings);
             let frame = self.pool.install(|| {
                 let execution = self.execution_of(&draft);
                 let whole = PixelRect::whole(draft.size);
@@ -237,11 +241,12 @@ impl Work {
             let share = deadline.share();
             let painted = frame.and_then(|frame| {
                 let view = self.view(wanted.view, &frame, prepared, &settings, &deadline.cancel)?;
-                Ok(view.map_or_else(|| frame.image.to_rgb8(&settings), |view| view.rgb8))
+                Ok(view.map(|view| pack(&view.rgb8)))
             });
             match painted {
-                Ok(rgb8) => {
-                    let pixels = self.pool.install(|| enlarge(&pack(&rgb8), draft.size, wanted.settings.size));
+                Ok(view) => {
+                    let small = view.unwrap_or_else(|| deadline.into_pixels());
+                    let pixels = self.enlarged(small, draft.size, wanted.settings.size);
                     let time = start.elapsed();
                     self.quality.measured(&draft, time.as_secs_f64(), 1.0);
                     return self.show(wanted, &draft, pixels, time);
@@ -249,6 +254,16 @@ impl Work {
                 Err(_) => self.quality.measured(&draft, start.elapsed().as_secs_f64(), share),
             }
         }
+    }
+
+    /// A draft in the size of the window.
+    fn enlarged(&mut self, small: Vec<u32>, from: [u32; 2], to: [u32; 2]) -> Vec<u32> {
+        if from == to {
+            return small;
+        }
+        let mut large = std::mem::take(&mut self.spare);
+        self.pool.install(|| enlarge(&small, from, to, &mut large));
+        large
     }
 
     fn execution_of(&self, draft: &Draft) -> Execution {
@@ -259,13 +274,15 @@ impl Work {
         Execution { region: Region::Rectangle(side, side), ..self.execution }
     }
 
-    fn show(&self, wanted: &Wanted, draft: &Draft, pixels: Vec<u32>, time: Duration) {
+    fn show(&mut self, wanted: &Wanted, draft: &Draft, pixels: Vec<u32>, time: Duration) {
+        let spare = &mut self.spare;
         self.screen.change(|picture| {
             picture.size = wanted.settings.size;
-            picture.pixels = pixels;
+            *spare = std::mem::replace(&mut picture.pixels, pixels);
             picture.stage = Stage::Draft;
             picture.draft = (draft.size, draft.depth);
             picture.draft_time = time;
+            picture.scene = Some(Arc::clone(&wanted.scene));
             picture.drafts += 1;
             picture.finished = None;
         });
@@ -322,25 +339,37 @@ fn draft_settings(settings: &Settings, draft: &Draft) -> Settings {
     Settings { size: draft.size, depth: draft.depth, antialias: Antialias::Off, ..settings.clone() }
 }
 
-/// Gives a draft up when its time is over.
-#[derive(Default)]
-struct Deadline {
+/// Collects a draft, and gives it up when its time is over.
+struct Deadline<'a> {
     end: Option<Instant>,
     cancel: Cancel,
     /// Regions that were done, and all of them.
     done: AtomicU64,
     total: AtomicU64,
+    settings: &'a Settings,
+    pixels: Mutex<Vec<u32>>,
 }
 
-impl Deadline {
+impl<'a> Deadline<'a> {
+    /// For a picture with these settings.
+    fn new(end: Option<Instant>, settings: &'a Settings) -> Self {
+        let [width, height] = settings.size.map(|side| side as usize);
+        let pixels = Mutex::new(vec![0; width * height]);
+        Self { end, cancel: Cancel::new(), done: AtomicU64::new(0), total: AtomicU64::new(0), settings, pixels }
+    }
+
     /// The share of the picture that was painted.
     fn share(&self) -> f64 {
         let done = self.done.load(Ordering::Relaxed) as f64;
         done.max(0.5) / self.total.load(Ordering::Relaxed).max(1) as f64
     }
+
+    fn into_pixels(self) -> Vec<u32> {
+        self.pixels.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
-impl Progress for Deadline {
+impl Progress for Deadline<'_> {
     fn regions_done(&self, _: u32, done: usize, total: usize) {
         self.done.fetch_max(done as u64, Ordering::Relaxed);
         self.total.store(total as u64, Ordering::Relaxed);
@@ -348,6 +377,17 @@ impl Progress for Deadline {
             self.cancel.cancel();
         }
     }
+
+    fn painted(&self, rect: &PixelRect, colors: &mut dyn Iterator<Item = Vec3f>) {
+        // Encoded here, by all threads, and not at the end by one of them.
+        let rgb8 = encoded(colors.collect(), self.settings);
+        let mut pixels = self.pixels.lock().unwrap_or_else(PoisonError::into_inner);
+        copy_rect(&mut pixels, self.settings.size[0], rect, &rgb8);
+    }
+}
+
+fn encoded(pixels: Vec<Vec3f>, settings: &Settings) -> Vec<u8> {
+    Image { width: pixels.len() as u32, height: 1, pixels }.to_rgb8(settings)
 }
 
 /// Paints finished regions on the screen.
@@ -358,12 +398,6 @@ struct Brush<'a> {
     paints: bool,
 }
 
-impl Brush<'_> {
-    fn encoded(&self, pixels: Vec<Vec3f>) -> Vec<u8> {
-        Image { width: pixels.len() as u32, height: 1, pixels }.to_rgb8(self.settings)
-    }
-}
-
 impl Progress for Brush<'_> {
     fn regions_done(&self, phase: u32, done: usize, total: usize) {
         let share = (phase - 1) as f32 + done as f32 / total.max(1) as f32;
@@ -372,7 +406,7 @@ impl Progress for Brush<'_> {
 
     fn painted(&self, rect: &PixelRect, colors: &mut dyn Iterator<Item = Vec3f>) {
         if self.paints {
-            self.screen.paint(self.settings.size, rect, &self.encoded(colors.collect()));
+            self.screen.paint(self.settings.size, rect, &encoded(colors.collect(), self.settings));
         }
     }
 
@@ -381,6 +415,6 @@ impl Progress for Brush<'_> {
             return;
         }
         let (places, colors): (Vec<_>, Vec<_>) = pixels.unzip();
-        self.screen.touch_up(self.settings.size, &places, &self.encoded(colors));
+        self.screen.touch_up(self.settings.size, &places, &encoded(colors, self.settings));
     }
 }

@@ -1,11 +1,13 @@
 //! The picture that is shown, shared by those who paint it and the one who shows it.
 
+use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use whitted::render::{AovPicture, Frame, PixelRect};
 use whitted::scene::{Camera, Prepared, Settings};
 
 use crate::enlarge::packed;
+use crate::host::{Host, Shot};
 
 /// How far the picture is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,6 +45,12 @@ impl Finished {
     pub fn rgb8(&self) -> Vec<u8> {
         self.view.as_ref().map_or_else(|| self.frame.image.to_rgb8(&self.settings), |view| view.rgb8.clone())
     }
+
+    /// Save what is shown.
+    pub(crate) fn save(&self, host: &dyn Host, path: &Path) -> Result<(), String> {
+        let linear = self.view.is_none().then_some(&self.frame.image);
+        host.save(path, &Shot { size: self.settings.size, rgb8: &self.rgb8(), linear })
+    }
 }
 
 /// The picture that is shown.
@@ -62,19 +70,18 @@ pub struct Picture {
     pub draft_time: Duration,
     /// Drafts that were shown since the viewer was opened.
     pub drafts: u64,
+    /// The scene from which the draft was made.
+    pub(crate) scene: Option<Arc<Prepared>>,
     /// The finished picture, once it is.
     pub finished: Option<Arc<Finished>>,
 }
 
-impl Picture {
-    /// Copy the pixels of `rect`, RGB row by row, to their places.
-    fn copy(&mut self, rect: &PixelRect, rgb8: &[u8]) {
-        let (width, stride) = (rect.width as usize, self.size[0] as usize);
-        for (y, row) in (rect.y as usize..).zip(rgb8.chunks_exact(3 * width)) {
-            let start = y * stride + rect.x as usize;
-            let to = &mut self.pixels[start..start + width];
-            to.iter_mut().zip(row.chunks_exact(3)).for_each(|(to, rgb)| *to = packed(rgb));
-        }
+/// Copy the pixels of `rect`, RGB row by row, to their places among those of a picture of this width.
+pub(crate) fn copy_rect(pixels: &mut [u32], width: u32, rect: &PixelRect, rgb8: &[u8]) {
+    for (y, row) in (rect.y as usize..).zip(rgb8.chunks_exact(3 * rect.width as usize)) {
+        let start = y * width as usize + rect.x as usize;
+        let to = &mut pixels[start..start + rect.width as usize];
+        to.iter_mut().zip(row.chunks_exact(3)).for_each(|(to, rgb)| *to = packed(rgb));
     }
 }
 
@@ -109,7 +116,7 @@ impl Screen {
     pub(crate) fn paint(&self, size: [u32; 2], rect: &PixelRect, rgb8: &[u8]) {
         self.change(|picture| {
             if picture.size == size {
-                picture.copy(rect, rgb8);
+                copy_rect(&mut picture.pixels, size[0], rect, rgb8);
             }
         });
     }

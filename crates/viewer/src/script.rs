@@ -81,7 +81,7 @@ const USAGE: [(&str, &str); 14] = [
     ("orbit", "orbit X Y X Y [SECONDS]"),
     ("wheel", "wheel NOTCHES"),
     ("screenshot", "screenshot FILE.png"),
-    ("save", "save FILE.png"),
+    ("save", "save FILE.png|FILE.exr"),
     ("report", "report"),
     ("quit", "quit"),
 ];

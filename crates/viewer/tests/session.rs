@@ -9,7 +9,9 @@ use whitted::render::{Aov, Cancel, Execution, Silent, aovs, render};
 use whitted::scene::{Camera, Light, LightKind, NamedCamera, NamedMaterial, Prepared, Scene, Settings};
 use whitted::shading::{Material, Texture};
 use whitted::tree::BuildOptions;
-use whitted_viewer::{Action, Button, Effect, Host, Input, Key, Opened, Options, Session, Side, Stage};
+use whitted_viewer::{
+    Action, Button, Destination, Effect, Host, Input, Key, Opened, Options, Session, Shot, Side, Stage,
+};
 
 /// A machine that is busy elsewhere is given this long for anything.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -68,8 +70,8 @@ impl Host for Desk {
         Ok(Opened { scene, files: vec![self.path.clone()], warnings: Vec::new() })
     }
 
-    fn save(&self, path: &Path, size: [u32; 2], rgb8: &[u8]) -> Result<(), String> {
-        self.saved.lock().unwrap().push((path.to_owned(), size, rgb8.to_vec()));
+    fn save(&self, path: &Path, shot: &Shot<'_>) -> Result<(), String> {
+        self.saved.lock().unwrap().push((path.to_owned(), shot.size, shot.rgb8.to_vec()));
         Ok(())
     }
 
@@ -314,7 +316,7 @@ fn what_is_saved_is_the_finished_picture_even_if_the_viewer_is_closed() {
     let desk = Desk::new(scene());
     let mut session = session(&desk);
     session.act(Action::Side(Side::Right));
-    session.save(Some("picture.png".into()));
+    session.save(Destination::Named("picture.png".into()));
     assert!(desk.saved.lock().unwrap().is_empty(), "nothing is finished yet");
     rest(&mut session);
     session.tick(Instant::now());

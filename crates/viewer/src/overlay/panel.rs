@@ -105,8 +105,11 @@ fn picture(ui: &mut Ui, session: &mut Session) {
         }
     });
     ui.horizontal(|ui| {
-        if ui.button("save picture").clicked() {
+        if ui.button("save").clicked() {
             session.act(Action::Save);
+        }
+        if ui.button("save EXR").clicked() {
+            session.act(Action::SaveLight);
         }
         let record = if session.is_recording() { "stop and render" } else { "record a way" };
         if ui.button(record).clicked() {

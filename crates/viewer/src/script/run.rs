@@ -2,7 +2,7 @@
 
 use super::Step;
 use crate::app::App;
-use crate::host::Host;
+use crate::host::{Host, Shot};
 use crate::input::{Input, Key, Modifiers};
 use crate::options::Options;
 use crate::screen::Stage;
@@ -181,14 +181,13 @@ impl Puppet<'_> {
         self.app.draw(&mut self.pixels);
         self.app.draw(&mut self.pixels);
         let rgb8: Vec<u8> = self.pixels.iter().flat_map(|pixel| pixel.to_be_bytes().into_iter().skip(1)).collect();
-        self.host.save(path, self.size, &rgb8)
+        self.host.save(path, &Shot { size: self.size, rgb8: &rgb8, linear: None })
     }
 
     fn save(&mut self, path: &Path) -> Result<(), String> {
         self.act(&Step::WaitRefined)?;
         let finished = self.app.session.finished().ok_or("there is no finished picture")?;
-        let rgb8 = finished.rgb8();
-        self.host.save(path, finished.settings.size, &rgb8)
+        finished.save(&*self.host, path)
     }
 
     fn report(&mut self) {

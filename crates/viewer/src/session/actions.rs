@@ -4,12 +4,30 @@ use super::recorder::{Film, free_name};
 use super::{Effect, Session};
 use crate::action::{Action, Side};
 use crate::camera::{framing_all, from_side};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use whitted::math::Vec3d;
 use whitted::render::Aov;
 use whitted::scene::{Camera, NamedCamera, Scene, Settings};
+
+/// Where a picture is saved. The name's extension says in which format.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Destination {
+    /// In this file.
+    Named(PathBuf),
+    /// In the current folder, in a file named after the scene, with this extension, that is not there yet.
+    Free(&'static str),
+}
+
+impl Destination {
+    fn path(self, scene: &Path) -> PathBuf {
+        match self {
+            Self::Named(path) => path,
+            Self::Free(extension) => free_name(scene, "", &format!(".{extension}")),
+        }
+    }
+}
 
 impl Session {
     /// Do what is asked for.
@@ -25,7 +43,8 @@ impl Session {
             Action::NextView => self.step_view(1),
             Action::PreviousView => self.step_view(Aov::ALL.len()),
             Action::CopyCamera => self.copy_camera(now),
-            Action::Save => self.save(None),
+            Action::Save => self.save(Destination::Free("png")),
+            Action::SaveLight => self.save(Destination::Free("exr")),
             Action::Record => self.record(now),
             Action::Help => self.shown.help = !self.shown.help,
             Action::Panel => self.shown.panel = !self.shown.panel,
@@ -40,6 +59,8 @@ impl Session {
             self.shown.help = false;
         } else if self.inspector.current().is_some() {
             self.inspector.forget();
+        } else if self.shown.panel {
+            self.shown.panel = false;
         } else {
             self.effects.push(Effect::Close);
         }
@@ -136,12 +157,12 @@ impl Session {
         });
     }
 
-    /// Save the picture when it is finished, under this name or one that is free.
-    pub fn save(&mut self, path: Option<PathBuf>) {
+    /// Save the picture when it is finished.
+    pub fn save(&mut self, destination: Destination) {
         if self.finished().is_none() {
             self.notes.add("the picture is saved when it is finished", Instant::now());
         }
-        self.saves.push(path.unwrap_or_default());
+        self.saves.push(destination);
     }
 
     /// Save what was asked for, if it is finished by now.
@@ -150,13 +171,11 @@ impl Session {
             return;
         }
         let Some(finished) = self.finished() else { return };
-        for path in self.saves.drain(..) {
+        for destination in self.saves.drain(..) {
             let (host, finished) = (Arc::clone(&self.host), Arc::clone(&finished));
             self.errands.run(move |tell| {
-                let free = path.as_os_str().is_empty();
-                let path = if free { free_name(host.path(), "", ".png") } else { path };
-                let rgb8 = finished.rgb8();
-                match host.save(&path, finished.settings.size, &rgb8) {
+                let path = destination.path(host.path());
+                match finished.save(&*host, &path) {
                     Ok(()) => tell(format!("saved {}", path.display())),
                     Err(text) => tell(text),
                 }

@@ -4,6 +4,7 @@
 //! [`Session::tick`] now and then, and shows [`Session::picture`]. No call waits for the renderer, the reader or the disk.
 
 mod actions;
+mod following;
 mod inspection;
 mod notes;
 mod rate;
@@ -13,7 +14,7 @@ use crate::camera::{Click, Controls, Navigator};
 use crate::errands::Errands;
 use crate::host::Host;
 use crate::input::{Button, Input, Key};
-use crate::opener::{Activity, News, Opener, Ready};
+use crate::opener::{Activity, Opener, Ready};
 use crate::options::Options;
 use crate::painter::{Painter, Wanted, nameless};
 use crate::pick::{self, Picked};
@@ -23,11 +24,12 @@ use notes::Notes;
 use rate::Rate;
 use recorder::Recorder;
 use std::sync::{Arc, MutexGuard};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 use whitted::math::Vec3d;
 use whitted::render::Aov;
 use whitted::scene::{Camera, Prepared, Scene, Settings};
 
+pub use actions::Destination;
 pub use inspection::Inspection;
 pub use notes::Note;
 
@@ -80,6 +82,8 @@ pub struct Session {
     revision: u64,
     proposed_size: Option<[u32; 2]>,
     trouble: Option<String>,
+    /// When the file was saved whose change is not seen yet.
+    edit: Option<SystemTime>,
     /// What is shown instead of light.
     view: Option<Aov>,
     inspector: Inspector,
@@ -88,7 +92,7 @@ pub struct Session {
     recorder: Recorder,
     shown: Shown,
     effects: Vec<Effect>,
-    saves: Vec<std::path::PathBuf>,
+    saves: Vec<Destination>,
     wanted: Option<Wanted>,
     last_tick: Option<Instant>,
     last_change: Option<Instant>,
@@ -132,6 +136,7 @@ impl Session {
             revision: 0,
             proposed_size: None,
             trouble: None,
+            edit: None,
             notes: Notes::default(),
             rate: Rate::default(),
             recorder: Recorder::default(),
@@ -162,6 +167,7 @@ impl Session {
         }
         self.recorder.observe(self.navigator.camera(), now);
         self.order(now);
+        self.tell_of_edit(now);
         self.save_what_waits();
         self.revision += u64::from(self.notes.clear_old(now));
         self.next_tick(now)
@@ -183,42 +189,6 @@ impl Session {
     /// Something that is seen has changed.
     fn touch(&mut self, now: Instant) {
         self.last_change = Some(now);
-    }
-
-    fn hear(&mut self, news: News, now: Instant) {
-        self.revision += 1;
-        match news {
-            News::Read(size) => self.proposed_size = Some(size),
-            News::Broken(text) => self.trouble = Some(text),
-            News::Ready(ready) => {
-                self.trouble = None;
-                self.adopt(*ready, now);
-            }
-        }
-    }
-
-    /// Show a new scene, or a new state of it. What the file has changed is followed, what the person has is kept.
-    fn adopt(&mut self, ready: Ready, now: Instant) {
-        let size = self.settings.size;
-        let home = ready.scene.cameras.first().map_or_else(Camera::default, |named| named.camera);
-        let before = self.ready.take();
-        let old = before.as_ref().map(|before| &before.scene);
-        self.navigator.set_scene_size(scene_size(&ready, &home));
-        if old.and_then(|old| old.cameras.first()).is_none_or(|old| old.camera != home) {
-            self.navigator.jump_to(home);
-        }
-        if old.is_none_or(|old| old.settings != ready.scene.settings) {
-            self.settings = Settings { size, ..ready.scene.settings.clone() };
-        }
-        match &before {
-            Some(_) => self.notes.add(format!("reloaded in {} ms", ready.read_time.as_millis()), now),
-            None => ready.warnings.iter().for_each(|warning| self.notes.add(warning.clone(), now)),
-        }
-        self.look = Some(look_of(&ready.scene));
-        self.shown_scene = Some(Arc::clone(&ready.prepared));
-        self.ready = Some(ready);
-        // An edit is finished when it arrives: its draft is refined at once.
-        self.last_change = None;
     }
 
     /// Order the picture that should be seen now, if it is not on order.
@@ -453,26 +423,6 @@ impl Session {
     pub fn is_dragging(&self) -> bool {
         self.controls.is_dragging()
     }
-}
-
-/// The scene without its shapes.
-fn look_of(scene: &Scene) -> Scene {
-    Scene {
-        cameras: scene.cameras.clone(),
-        lights: scene.lights.clone(),
-        ambient: scene.ambient,
-        background: scene.background,
-        materials: scene.materials.clone(),
-        settings: scene.settings.clone(),
-        ..Scene::default()
-    }
-}
-
-/// A length by which speeds are measured: the extent of the scene, or the distance to what is looked at.
-fn scene_size(ready: &Ready, home: &Camera) -> f64 {
-    let extent = ready.bounds.map_or(0.0, |[lo, hi]| (hi - lo).length());
-    let size = if extent > 0.0 { extent } else { (home.look_at - home.eye).length() };
-    if size.is_finite() { size } else { 1.0 }
 }
 
 /// The point where a ray that hits nothing passes the pivot.

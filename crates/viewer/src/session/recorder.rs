@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use whitted::render::{Cancel, Execution, PixelRect, Renderer, Silent, Unwatched};
 use whitted::scene::{Camera, Prepared, Settings};
 
-use crate::host::Host;
+use crate::host::{Host, Shot};
 use crate::painter::nameless;
 
 /// Pictures for each second of a recorded way.
@@ -112,7 +112,8 @@ impl Film {
                 || renderer.render(&scene, &self.settings, &self.execution, &whole, &Silent, &self.cancel, &Unwatched);
             let frame = self.pool.install(render).map_err(|cancelled| cancelled.to_string())?;
             let rgb8 = frame.image.to_rgb8(&self.settings);
-            self.host.save(&folder.join(format!("{number:05}.png")), self.settings.size, &rgb8)?;
+            let shot = Shot { size: self.settings.size, rgb8: &rgb8, linear: Some(&frame.image) };
+            self.host.save(&folder.join(format!("{number:05}.png")), &shot)?;
             if number % 10 == 0 {
                 tell(format!("frame {number} of {}", self.cameras.len()));
             }
