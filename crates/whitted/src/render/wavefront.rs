@@ -13,7 +13,7 @@ use super::queue::{RayQueue, Tag, TaggedRays};
 use super::recorder::Unrecorded;
 use super::rows::{BLOCK, first_lanes};
 use super::samples::Samples;
-use super::scatter::RAYS_PER_SAMPLE;
+use super::scatter::{RAYS_PER_SAMPLE, Scattered};
 use super::shadow::ShadowBatch;
 use super::vertex::Vertex;
 use super::workspace::Places;
@@ -200,10 +200,12 @@ impl Shade<'_, '_> {
             self.lit.append(lit, vertex.tag.sample, &vertex.lit());
         }
         if let Some(scattered) = vertex.scatter(token, self.context, self.generation, self.samples, &mut Unrecorded) {
-            for child in [&scattered.reflected, &scattered.refracted] {
-                if child.exists.any() {
-                    self.next.append(child.exists, &child.rays);
-                }
+            let Scattered { reflected, refracted } = scattered;
+            if reflected.exists.any() {
+                self.next.append(reflected.exists, &reflected.rays);
+            }
+            if refracted.exists.any() {
+                self.next.append(refracted.exists, &refracted.rays);
             }
         }
     }
