@@ -1,6 +1,8 @@
 //! The light that samples have gathered, in a form that does not depend on the order in which it came.
 
+use super::rows::{array, array_f32, lanes_of};
 use crate::math::{Vec3, Vec3f};
+use simd::{F32Lanes, MaskLanes};
 
 /// Light sums of a batch of samples, in 64-bit fixed point: integers add in any order to the same sum.
 ///
@@ -35,6 +37,22 @@ impl Film {
         *sum = sum.zip(light.map(to_fixed), i64::saturating_add);
     }
 
+    /// As [`add`](Self::add), for the samples of the lanes `mask`.
+    ///
+    /// # Panics
+    /// If there is no such sample.
+    #[inline(always)]
+    pub(super) fn add_lanes<L: F32Lanes>(&mut self, token: L::Token, mask: L::Mask, sample: L::U32, light: Vec3<L>) {
+        let samples = array::<L>(sample);
+        let rows = [units(token, light.x), units(token, light.y), units(token, light.z)].map(array_f32);
+        let [r, g, b] = [rows[0].as_ref(), rows[1].as_ref(), rows[2].as_ref()];
+        for lane in lanes_of(mask.bits()) {
+            let addend = Vec3::new(r[lane] as i64, g[lane] as i64, b[lane] as i64);
+            let sum = &mut self.sums[samples.as_ref()[lane] as usize];
+            *sum = sum.zip(addend, i64::saturating_add);
+        }
+    }
+
     /// The light of every sample, in order; finite and ≥ 0.
     pub(super) fn colors(&self) -> impl ExactSizeIterator<Item = Vec3f> {
         self.sums.iter().map(|sum| sum.map(|a| (a as f64 / f64::from(UNIT)) as f32))
@@ -46,9 +64,29 @@ fn to_fixed(light: f32) -> i64 {
     if light > 0.0 { (light.min(BRIGHTEST) * UNIT) as i64 } else { 0 }
 }
 
+/// [`to_fixed`], but for the cast.
+#[inline(always)]
+fn units<L: F32Lanes>(token: L::Token, light: L) -> L {
+    // The greater of NaN and 0 is 0.
+    light.max(L::splat(token, 0.0)).min(L::splat(token, BRIGHTEST)) * L::splat(token, UNIT)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shading::one::{One, one};
+    use simd::{Scalar, ScalarU32, U32Lanes};
+
+    #[test]
+    fn lanes_add_as_one_by_one() {
+        for light in [f32::NAN, -1.0, f32::NEG_INFINITY, -0.0, 0.25, 3.7e-9, 1e9, f32::INFINITY, f32::MAX] {
+            let mut film = Film::default();
+            film.reset(1);
+            let all = <One as F32Lanes>::Mask::from_bits(Scalar, 1);
+            film.add_lanes(Scalar, all, ScalarU32::splat(Scalar, 0), Vec3::splat(one(light)));
+            assert_eq!(film.sums[0], Vec3::splat(to_fixed(light)), "{light}");
+        }
+    }
 
     fn sum(lights: &[f32]) -> f32 {
         let mut film = Film::default();

@@ -99,7 +99,7 @@ impl<H: Source, R: Recorder> Run<'_, H, R> {
         let hit = self.source.closest_hit(&ray, &mut self.samples.statistics);
         if !hit.is_hit() {
             let light = context.look.background(Scalar, rays.direction).times(rays.tag.weight);
-            self.samples.add_lanes(all, sample, light);
+            self.samples.add_lanes(Scalar, all, sample, light);
             self.recorder.misses(light);
             return;
         }
@@ -112,7 +112,7 @@ impl<H: Source, R: Recorder> Run<'_, H, R> {
             vertex.note_first(Scalar, context, self.samples);
         }
         let ambient = vertex.ambient(Scalar, context);
-        self.samples.add_lanes(all, sample, ambient);
+        self.samples.add_lanes(Scalar, all, sample, ambient);
         self.recorder.hits(&vertex, ambient);
         if vertex.answers_to_lights(Scalar).any() {
             self.light(&vertex);
@@ -138,7 +138,7 @@ impl<H: Source, R: Recorder> Run<'_, H, R> {
                 continue;
             }
             let (outcome, light) = self.arriving(&sent);
-            self.samples.add_lanes(vertex.active, vertex.tag.sample, ones(light));
+            self.samples.add_lanes(Scalar, vertex.active, vertex.tag.sample, ones(light));
             self.recorder.lit(lamp, &sent, Some(outcome), light);
         }
     }

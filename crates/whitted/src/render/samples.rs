@@ -34,13 +34,8 @@ impl Samples {
 
     /// Add light to the samples of the lanes `mask`.
     #[inline(always)]
-    pub(super) fn add_lanes<L: F32Lanes>(&mut self, mask: L::Mask, sample: L::U32, light: Vec3<L>) {
-        let samples = array::<L>(sample);
-        let rows = [array_f32(light.x), array_f32(light.y), array_f32(light.z)];
-        let [r, g, b] = [rows[0].as_ref(), rows[1].as_ref(), rows[2].as_ref()];
-        for lane in lanes_of(mask.bits()) {
-            self.film.add(samples.as_ref()[lane], Vec3::new(r[lane], g[lane], b[lane]));
-        }
+    pub(super) fn add_lanes<L: F32Lanes>(&mut self, token: L::Token, mask: L::Mask, sample: L::U32, light: Vec3<L>) {
+        self.film.add_lanes(token, mask, sample, light);
     }
 
     /// Note what the camera rays of the samples of the lanes `mask` hit.

@@ -5,11 +5,11 @@ use super::lighting::Sent;
 use super::packing::Packing;
 use super::rows::{BLOCK, Rows};
 use super::samples::Samples;
-use crate::math::Vec3f;
+use crate::math::{Vec3, Vec3f};
 use crate::ray::{Hit, HitBatch, Ray, RayBatch, Rays};
 use crate::scene::Shadows;
 use crate::tree::{BitSet, CrossingLists, Occlusion, Scratch};
-use simd::{F32Lanes, Kernel, Level, Simd, U32Lanes};
+use simd::{F32Lanes, Kernel, Level, MaskLanes, Simd, U32Lanes};
 use std::ops::Range;
 
 /// Light passes at most this many surfaces; what would pass more is lost. Bounds the work of a shadow ray.
@@ -33,6 +33,8 @@ pub(super) struct ShadowBatch {
     rows: Rows<10, 1>,
     packed: Packed,
     occlusion: Vec<Occlusion>,
+    /// 1 for each ray that nothing is in the way of, in the order of the rows.
+    clear: Vec<u32>,
     filtered: FilteredBatch,
 }
 
@@ -65,21 +67,51 @@ impl ShadowBatch {
         let rays = self.packed.rays();
         let opaque = opaque_primitives(context);
         samples.statistics += context.query.occluded(rays, opaque, &mut self.occlusion, scratch);
-        let [r, g, b] = [7, 8, 9].map(|row| self.rows.floats(row));
-        let (sample, order) = (self.rows.integers(0), self.packed.packing.order());
-        for (place, &occlusion) in self.occlusion.iter().enumerate() {
-            if occlusion == Occlusion::Blocked {
-                continue;
-            }
-            let index = order[place] as usize;
-            let (sample, light) = (sample[index], Vec3f::new(r[index], g[index], b[index]));
-            match occlusion {
-                Occlusion::Filtered => self.filtered.push(&rays.get(place), sample, light),
-                _ => samples.add(sample, light),
-            }
-        }
+        self.sort_out();
+        simd::dispatch(context.execution.level, Deliver { rows: &self.rows, clear: &self.clear, samples });
         self.filtered.resolve(context, scratch, samples);
         self.rows.clear();
+    }
+}
+
+impl ShadowBatch {
+    /// Note which rays nothing is in the way of, in the order of the rows, and keep those that transparent things are.
+    fn sort_out(&mut self) {
+        let [r, g, b] = [7, 8, 9].map(|row| self.rows.floats(row));
+        let (sample, rays) = (self.rows.integers(0), self.packed.rays());
+        self.clear.clear();
+        self.clear.resize(self.rows.len().next_multiple_of(BLOCK), 0);
+        for (place, (&occlusion, &index)) in self.occlusion.iter().zip(self.packed.packing.order()).enumerate() {
+            let index = index as usize;
+            self.clear[index] = u32::from(occlusion == Occlusion::Clear);
+            if occlusion == Occlusion::Filtered {
+                self.filtered.push(&rays.get(place), sample[index], Vec3f::new(r[index], g[index], b[index]));
+            }
+        }
+    }
+}
+
+/// Adds the light of the rays that nothing is in the way of.
+struct Deliver<'a> {
+    rows: &'a Rows<10, 1>,
+    /// 1 for each such ray.
+    clear: &'a [u32],
+    samples: &'a mut Samples,
+}
+
+impl Kernel for Deliver<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, token: S) {
+        let none = <S::F32x16 as F32Lanes>::U32::splat(token, 0);
+        for at in (0..self.rows.len()).step_by(BLOCK) {
+            let clear = !<S::F32x16 as F32Lanes>::U32::load_slice(token, &self.clear[at..]).eq(none);
+            if clear.any() {
+                let ([.., r, g, b], [sample]) = self.rows.load::<S::F32x16>(token, at);
+                self.samples.add_lanes(token, clear, sample, Vec3::new(r, g, b));
+            }
+        }
     }
 }
 

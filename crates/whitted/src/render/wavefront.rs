@@ -178,7 +178,7 @@ impl Shade<'_, '_> {
         let (missed, hit) = (active & misses, active & !misses);
         if missed.any() {
             let light = self.context.look.background(token, rays.direction).times(rays.tag.weight);
-            self.samples.add_lanes(missed, rays.tag.sample, light);
+            self.samples.add_lanes(token, missed, rays.tag.sample, light);
         }
         if !hit.any() {
             return;
@@ -194,7 +194,7 @@ impl Shade<'_, '_> {
         if self.generation == 0 {
             vertex.note_first(token, self.context, self.samples);
         }
-        self.samples.add_lanes(vertex.active, vertex.tag.sample, vertex.ambient(token, self.context));
+        self.samples.add_lanes(token, vertex.active, vertex.tag.sample, vertex.ambient(token, self.context));
         let lit = vertex.answers_to_lights(token);
         if lit.any() {
             self.lit.append(lit, vertex.tag.sample, &vertex.lit());
