@@ -97,15 +97,15 @@ impl Experiment {
 
     /// About how many seconds it takes on a core of 2025: for the progress, which needs only their ratios.
     pub(crate) fn weight(self, effort: &Effort) -> f64 {
-        let (rounds, spheres) = (effort.rounds as f64, effort.promise_spheres.iter().sum::<u32>());
+        let (rounds, regions) = (effort.rounds as f64, effort.regions.len() + 2);
         let measured = rounds * effort.seconds;
         match self {
             Self::Table1 => 10.0 * effort.spheres.len() as f64 * (0.7 + 2.0 * measured),
-            Self::Table2 => 2.0 * (effort.region_spheres.len() * effort.regions.len()) as f64 * measured,
+            Self::Table2 => (effort.region_spheres.len() * regions) as f64 * (0.2 + 2.0 * measured),
             Self::Table3 => 0.2 * rounds,
             Self::Table4 => 0.6 * rounds,
             Self::Grid => 3.0 + 20.0 * measured,
-            Self::Promise => 1.0 + 5e-5 * f64::from(spheres),
+            Self::Promise => experiments::promise::weight(&effort.promise_spheres),
             Self::Exact => 4.0,
             _ => 1.0,
         }
@@ -128,5 +128,26 @@ impl Experiment {
             Self::Promise => experiments::promise::run,
             Self::Exact => experiments::exact::run,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plans_keep_to_their_time() {
+        let seconds = |effort: Effort| Experiment::ALL.iter().map(|e| e.weight(&effort)).sum::<f64>();
+        let (quick, full) = (seconds(Effort::quick()), seconds(Effort::full()));
+        println!("about {quick:.0} s, about {full:.0} s");
+        assert!(quick <= 60.0 && full <= 15.0 * 60.0, "{quick} {full}");
+    }
+
+    #[test]
+    fn names_are_unique_and_found() {
+        for experiment in Experiment::ALL {
+            assert_eq!(Experiment::by_name(experiment.name()), Some(experiment));
+        }
+        assert_eq!(Experiment::by_name("table5"), None);
     }
 }

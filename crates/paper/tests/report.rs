@@ -1,6 +1,6 @@
 //! A whole run with tiny settings, its files read back.
 
-use paper::report::{Block, Ending, Report};
+use paper::report::{Block, Cell, Ending, Number, Report};
 use paper::{Effort, Experiment, Plan, Watch};
 use std::cell::RefCell;
 use whitted::render::Cancel;
@@ -116,6 +116,72 @@ fn all_forms_hold_the_same_numbers() {
         assert!(!file.path.contains("figures") || markdown.contains(&file.path), "{}", file.path);
     }
     assert!(files.iter().any(|file| file.path == "report.html"));
+}
+
+/// What stands in a table at a row and a column.
+fn number<'a>(report: &'a Report, table: &str, row: &str, column: &str) -> &'a Number {
+    let tables = report.sections.iter().flat_map(|section| section.tables());
+    let table = tables.into_iter().find(|known| known.id == table).expect("the table is there");
+    let row = table.rows.iter().find(|known| known.name == row).expect("the row is there");
+    let column = table.columns.iter().position(|known| known.name == column).expect("the column is there");
+    let Cell::Number(number) = &row.cells[column] else { panic!("a number, not {:?}", row.cells[column]) };
+    number
+}
+
+#[test]
+fn the_papers_numbers_stand_beside_ours() {
+    let report = run(&[Experiment::Table1, Experiment::Table2, Experiment::Table4], &Log::default());
+    for (table, row, column, paper) in [
+        ("table1-all4", "naive", "10", 2.2),
+        ("table1-mix", "SSE math", "10", 1.1),
+        ("table1-mix", "kd-tree + SSE + region", "10", 0.1),
+        ("table1-mix-ratio", "kd-tree + SSE", "10", 22.0),
+        ("table2", "16", "the paper", 1.69),
+        ("table4", "SSE + alignment", "paper", 1.4),
+    ] {
+        let number = number(&report, table, row, column);
+        let printed = number.paper.expect("the paper has it");
+        assert!((printed - paper).abs() < 1e-9, "{table}, {row}, {column}: {printed}");
+    }
+    // What is measured is a time, and no more than all rounds took.
+    let naive = number(&report, "table1-mix", "naive", "50").measured.expect("it was measured");
+    assert!(
+        0.0 < naive.low && naive.low <= naive.median && naive.median <= naive.high && naive.high < 60.0,
+        "{naive:?}"
+    );
+    assert_eq!((naive.rounds, number(&report, "table1-mix", "naive", "50").paper), (2, None));
+}
+
+#[test]
+fn every_technique_is_in_table_1_and_every_region_in_table_2() {
+    let report = run(&[Experiment::Table1, Experiment::Table2], &Log::default());
+    let rows = |id: &str| -> Vec<&str> {
+        let table = report.sections.iter().flat_map(|section| section.tables()).find(|table| table.id == id).unwrap();
+        assert!(
+            table.rows.iter().flat_map(|row| &row.cells).all(|cell| !matches!(cell, Cell::Empty)) || id == "table2"
+        );
+        table.rows.iter().map(|row| row.name.as_str()).collect()
+    };
+    for family in ["table1-all4", "table1-mix"] {
+        let rows = rows(family);
+        let paper = ["naive", "SSE math", "kd-tree + SSE", "kd-tree + SSE + region"];
+        assert!(paper.iter().all(|name| rows.contains(name)), "{rows:?}");
+        assert!(rows.iter().any(|name| name.starts_with("streams + frusta")) && rows.contains(&"the same, 2 threads"));
+    }
+    assert_eq!(rows("table2"), ["1", "16", "scanline", "whole picture"]);
+}
+
+#[test]
+fn tests_and_steps_of_rays_are_counted() {
+    let report = run(&[Experiment::Promise], &Log::default());
+    for structure in ["grid", "median", "SAH", "wide"] {
+        for (spheres, most) in [("10", 40.0), ("100", 60.0)] {
+            let of = |table| number(&report, table, structure, spheres).measured.unwrap().median;
+            let (camera, tests, steps) = (of("promise-camera"), of("promise-tests"), of("promise-steps"));
+            assert!(0.0 < camera && camera < most && 0.0 < tests && tests < most, "{structure}: {camera} {tests}");
+            assert!(steps >= 1.0, "{structure}: {steps}");
+        }
+    }
 }
 
 #[test]

@@ -238,3 +238,52 @@ impl Way {
         self.stations().windows(2).map(|pair| (pair[1] - pair[0]) * length).fold(f32::INFINITY, f32::min)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Effort, Watch};
+    use whitted::render::Cancel;
+
+    struct Unwatched;
+
+    impl Watch for Unwatched {
+        fn at(&self, _: f64, _: &str) {}
+    }
+
+    fn sliced() -> Sliced {
+        let (effort, cancel) = (Effort::quick(), Cancel::new());
+        Sliced::new(&Session::new(&effort, &Unwatched, &cancel).unwrap())
+    }
+
+    #[test]
+    fn leaves_of_a_slice_fill_it_once() {
+        let sliced = sliced();
+        let area = |[low, high]: [[f64; 2]; 2]| (high[0] - low[0]) * (high[1] - low[1]);
+        let leaves: f64 = sliced.cells(&[]).into_iter().map(|cell| area(cell.corners)).sum();
+        let whole = area(sliced.bounds());
+        assert!((leaves / whole - 1.0).abs() < 1e-5, "{leaves} of {whole}");
+        for ([x, y], radius, _) in sliced.circles(|_| Role::Ignored) {
+            assert!(radius > 0.0 && x.abs() + radius <= 1.01 && y.abs() + radius <= 1.01, "{x} {y} {radius}");
+        }
+    }
+
+    #[test]
+    fn a_way_goes_from_leaf_to_leaf_to_its_hit() {
+        let sliced = sliced();
+        let mut hits = 0;
+        for way in rays(&sliced).map(|ray| Way::of(&sliced, &ray)) {
+            let Some((primitive, t)) = way.hit else { continue };
+            hits += 1;
+            assert!(way.tests > 0 && way.tested.contains(&primitive) && way.tests == way.tested.len());
+            assert!(way.steps >= way.leaves.len() - 1, "each leaf is found from the root");
+            for pair in way.leaves.windows(2) {
+                assert_eq!(pair[0].1[1], pair[1].1[0], "a leaf begins where the one before ends");
+            }
+            let (_, [from, to]) = way.leaves[way.leaves.len() - 1];
+            assert!(from <= t * 1.001 && t <= to * 1.001, "the hit at {t} is in the last leaf, {from} to {to}");
+            assert!(way.stations().is_sorted() && way.room() >= 0.0);
+        }
+        assert!(hits > 100, "{hits}");
+    }
+}

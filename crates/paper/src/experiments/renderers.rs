@@ -43,11 +43,13 @@ impl<'a> Classics<'a> {
     ) -> Result<Self, Cancelled> {
         let primitives = stock.prepared.geometry().primitives();
         let stop = || session.cancel.is_cancelled();
-        let kd = |split| threads.seconds(|| Structure::Kd(KdTree::build_until(primitives, split, &stop)));
+        let kd = |split| {
+            let built = threads.seconds(|| Structure::Kd(KdTree::build_until(primitives, split, &stop)));
+            // A tree that was not finished must not be measured.
+            session.go_on().map(|()| built)
+        };
         let (grid, grid_seconds) = threads.seconds(|| Structure::Grid(Grid::build(primitives)));
-        let ((median, median_seconds), (sah, sah_seconds)) = (kd(Split::Median), kd(Split::Sah));
-        // A tree that was not finished must not be measured.
-        session.go_on()?;
+        let ((median, median_seconds), (sah, sah_seconds)) = (kd(Split::Median)?, kd(Split::Sah)?);
         Ok(Self {
             stock,
             objects: Objects::new(primitives, test),

@@ -208,6 +208,34 @@ mod tests {
     }
 
     #[test]
+    fn a_part_stands_for_the_whole() {
+        let effort = Effort { size: [256, 192], rounds: 3, seconds: 0.004, ..Effort::quick() };
+        let cancel = Cancel::new();
+        let session = Session::new(&effort, &Unwatched, &cancel).unwrap();
+        let reference = reference(effort.size);
+        let stage = Stage { scene: "places", reference: &reference, span: [0.0, 1.0] };
+        let contestant = |spread| Contestant {
+            of_paper: true,
+            name: format!("{spread:?}"),
+            bound: Bound::Equal,
+            threads: &session.one,
+            spread,
+            render: Box::new(|rect| {
+                // Each pixel takes the same time.
+                (0..rect.len() * 3000).for_each(|i| _ = std::hint::black_box(i));
+                Ok(picture(rect, None))
+            }),
+        };
+        let all = [Spread::Whole, Spread::Tiles(8), Spread::Bands].map(contestant);
+        let (measured, _) = contest(&session, &stage, &all);
+        let [whole, tiles, bands] = [0, 1, 2].map(|index| measured[index].unwrap());
+        assert!(whole.traced == 1.0 && tiles.traced < 0.5 && bands.traced < 0.5, "{measured:?}");
+        for part in [tiles, bands] {
+            assert!((0.5..2.0).contains(&(part.median / whole.median)), "{measured:?}");
+        }
+    }
+
+    #[test]
     fn a_part_is_extrapolated_by_rays() {
         let effort = Effort { size: [640, 480], ..Effort::quick() };
         let cancel = Cancel::new();
