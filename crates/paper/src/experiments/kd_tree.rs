@@ -114,7 +114,7 @@ pub(crate) fn slice(session: &Session, section: &mut Section) -> Result<(), Canc
         the bluer the more objects it refers to; circles are the spheres where the slice cuts them."
             .into();
     section.differs =
-        "These are the planes that the surface area heuristic chose in this run. White leaves are empty space, cut \
+        "These are the planes that the surface area heuristic chose in this run. Leaves without colour are empty space, cut \
         off early. A leaf may be blue without a circle in it: its object is above or below the slice."
             .into();
     session.at(0.0, "figure 1")?;
