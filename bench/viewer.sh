@@ -83,6 +83,23 @@ furnished() {
     printf '[[mesh]]\nfile = "%s"\nmaterial = "default"\n' "$WHITTED_SHARED/scenes/$1.ply"
 }
 
+# edits: save the still life nine times, each time with other colours; milliseconds until that is seen.
+edits() {
+    cp "$root/scenes/still-life.toml" "$work/edited.toml"
+    {
+        echo "wait refined"
+        for turn in 1 2 3 4 5 6 7 8 9; do printf 'wait 1.5\nreport\n'; done
+    } >"$work/script"
+    "$whitted" view "$work/edited.toml" --threads "$threads" --size 1280x720 --script "$work/script" >"$work/report" &
+    viewer=$!
+    sleep 3
+    while kill -0 $viewer 2>/dev/null; do
+        sed -i "s/color = \"#[0-9a-f]*/color = \"#80$(date +%N | cut -c1-4)/" "$work/edited.toml"
+        sleep 1.37
+    done
+    sed -n 's/.*seen after \([0-9]*\) ms/\1/p' "$work/report" | sort -n | awk '{ a[NR] = $1 } END { print a[int((NR + 1) / 2)] " (at most " a[NR] ")" }'
+}
+
 echo "| scene | window | pictures a second | width and height | depth | of free cores | full quality |"
 echo "| --- | --- | ---: | ---: | ---: | ---: | ---: |"
 rate mix-1000 "$root/scenes/mix-1000.toml" 640 480
@@ -95,6 +112,9 @@ if [ -n "${WHITTED_SHARED:-}" ]; then
     done
 fi
 rate mix-50000 "$root/scenes/mix-50000.toml" 1280 720
+
+echo
+echo "a saved change is seen after $(edits) ms"
 
 if command -v Xvfb >/dev/null && command -v xdotool >/dev/null; then
     DISPLAY=:$((200 + $$ % 300))

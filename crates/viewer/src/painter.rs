@@ -233,7 +233,7 @@ impl Work {
             let end = self.quality.patience().map(|patience| start + patience);
             let deadline = Deadline::new(end, &settings);
             let frame = self.pool.install(|| {
-                let execution = self.execution_of(&draft);
+                let execution = Execution { first_samples: wanted.view.is_some(), ..self.execution_of(&draft) };
                 let whole = PixelRect::whole(draft.size);
                 let (renderer, cancel) = (&self.renderer, &deadline.cancel);
                 renderer.render(prepared, &settings, &execution, &whole, &deadline, cancel, &Unwatched)
@@ -241,6 +241,7 @@ impl Work {
             let share = deadline.share();
             let painted = frame.and_then(|frame| {
                 let view = self.view(wanted.view, &frame, prepared, &settings, &deadline.cancel)?;
+                self.renderer.recycle(frame);
                 Ok(view.map(|view| pack(&view.rgb8)))
             });
             match painted {

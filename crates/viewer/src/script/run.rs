@@ -192,13 +192,14 @@ impl Puppet<'_> {
 
     fn report(&mut self) {
         let rate = self.app.session.rate(Instant::now());
+        let edit = self.app.session.edit_time().map(|time| format!(", change seen after {} ms", time.as_millis()));
         let picture = self.app.session.picture();
         let ([width, height], depth) = picture.draft;
         let finished = match (&picture.finished, picture.stage) {
             (Some(finished), Stage::Finished) => format!(", finished in {:.3} s", finished.time.as_secs_f64()),
             _ => String::new(),
         };
-        let line = format!("{rate:.1} fps, {width}x{height}, depth {depth}{finished}");
+        let line = format!("{rate:.1} fps, {width}x{height}, depth {depth}{finished}{}", edit.unwrap_or_default());
         drop(picture);
         (self.print)(&line);
     }

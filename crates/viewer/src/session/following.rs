@@ -55,6 +55,7 @@ impl Session {
             self.edit = None;
             // A clock that was set meanwhile tells nothing.
             let time = saved.elapsed().unwrap_or_default();
+            self.edit_time = Some(time);
             self.notes.add(format!("seen {} ms after it was saved", time.as_millis()), now);
             self.revision += 1;
         }

@@ -84,6 +84,7 @@ pub struct Session {
     trouble: Option<String>,
     /// When the file was saved whose change is not seen yet.
     edit: Option<SystemTime>,
+    edit_time: Option<Duration>,
     /// What is shown instead of light.
     view: Option<Aov>,
     inspector: Inspector,
@@ -137,6 +138,7 @@ impl Session {
             proposed_size: None,
             trouble: None,
             edit: None,
+            edit_time: None,
             notes: Notes::default(),
             rate: Rate::default(),
             recorder: Recorder::default(),
@@ -389,6 +391,11 @@ impl Session {
     /// How long reading and building the scene took.
     pub fn opening_times(&self) -> Option<[Duration; 2]> {
         self.ready.as_ref().map(|ready| [ready.read_time, ready.build_time])
+    }
+
+    /// From the last time that the scene's files were saved until the change was seen.
+    pub fn edit_time(&self) -> Option<Duration> {
+        self.edit_time
     }
 
     /// What is being read or built.
