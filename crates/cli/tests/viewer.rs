@@ -121,6 +121,54 @@ fn the_window_can_be_closed_while_it_is_busy() {
 }
 
 #[test]
+fn files_may_come_and_go_and_sizes_change() {
+    let folder = folder("storms");
+    let Some(mut desk) = Desk::start() else { return };
+    desk.scale = 2;
+    let (file, mesh) = (folder.join("scene.toml"), folder.join("wall.obj"));
+    let wall = |height: u32| format!("v -2 0 -1\nv 2 0 -1\nv 2 {height} -1\nf 1 2 3\n");
+    let text = scene("#c04020", CAMERA) + "[[mesh]]\nfile = \"wall.obj\"\nmaterial = \"ball\"\n";
+    fs::write(&mesh, wall(3)).unwrap();
+    fs::write(&file, &text).unwrap();
+    let mut viewer = Viewer::open(&desk, &folder, &["--size", SIZE], &file);
+    viewer.key("o");
+    let high = rendered(&folder, &text);
+    viewer.wait_for_picture("the first picture", |picture| picture == high);
+
+    // Sizes follow each other faster than pictures do.
+    for step in 0..20 {
+        viewer.resize([200 + 30 * (step % 7), 150 + 40 * (step % 5)]);
+    }
+    viewer.resize([320, 240]);
+    viewer.wait_for_picture("the picture after many sizes", |picture| picture == high);
+
+    // A mesh that the scene reads is changed, lost, and comes back.
+    fs::write(&mesh, wall(2)).unwrap();
+    let low = rendered(&folder, &text);
+    assert!(low != high);
+    viewer.wait_for_picture("the changed mesh", |picture| picture == low);
+    fs::remove_file(&mesh).unwrap();
+    viewer.wait_for_picture("the card about the lost mesh", |picture| picture != low);
+    fs::write(&mesh, wall(3)).unwrap();
+    viewer.wait_for_picture("the mesh again", |picture| picture == high);
+
+    // So is the scene itself.
+    fs::remove_file(&file).unwrap();
+    viewer.wait_for_picture("the card about the lost scene", |picture| picture != high);
+    fs::write(&file, "version = 1\n").unwrap();
+    viewer.wait_for_picture("a scene with nothing in it", |picture| picture != high);
+    fs::write(&file, &text).unwrap();
+    viewer.wait_for_picture("the scene again", |picture| picture == high);
+
+    // Closed while it saves, it saves to the end.
+    viewer.wait_until_at_rest();
+    viewer.key("F12");
+    viewer.key("Escape");
+    assert_eq!(viewer.exit_code(), 0);
+    assert!(window::pixels(&fs::read(folder.join("scene.png")).unwrap()) == high);
+}
+
+#[test]
 fn without_a_display_it_says_so() {
     let folder = folder("no-display");
     let file = folder.join("scene.toml");
@@ -136,7 +184,7 @@ fn a_script_needs_no_display() {
     let folder = folder("script");
     let text = scene("#c04020", CAMERA);
     fs::write(folder.join("scene.toml"), &text).unwrap();
-    let script = "wait refined\nsave first.png\norbit 160 120 90 100\nwait refined\nkey p\nkey h\n\
+    let script = "wait refined\nsave first.png\nsave first.exr\norbit 160 120 90 100\nwait refined\nkey p\nkey h\n\
                   screenshot help.png\nkey escape\nreport\nquit\nsave never.png\n";
     fs::write(folder.join("look.txt"), script).unwrap();
     let arguments = ["view", "scene.toml", "--size", SIZE, "--script", "look.txt"];
@@ -147,6 +195,7 @@ fn a_script_needs_no_display() {
     let first = window::pixels(&fs::read(folder.join("first.png")).unwrap());
     assert!(first == rendered(&folder, &text));
     assert!(window::pixels(&fs::read(folder.join("help.png")).unwrap()) != first);
+    assert!(fs::read(folder.join("first.exr")).unwrap().starts_with(b"\x76\x2f\x31\x01"), "an EXR file");
     assert!(!folder.join("never.png").exists(), "a script ends with 'quit'");
 }
 

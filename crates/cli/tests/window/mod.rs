@@ -40,6 +40,8 @@ pub(crate) fn pixels(png: &[u8]) -> Vec<u8> {
 pub(crate) struct Desk {
     server: Child,
     display: String,
+    /// Physical pixels for each unit of layout.
+    pub(crate) scale: u32,
 }
 
 impl Desk {
@@ -58,7 +60,7 @@ impl Desk {
         let mut server = Command::new("Xvfb");
         server.args([&display, "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"]);
         let server = server.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("a display");
-        let desk = Self { server, display };
+        let desk = Self { server, display, scale: 1 };
         wait_for("the display", || desk.command("xdotool", &["getdisplaygeometry"]).status().unwrap().success());
         Some(desk)
     }
@@ -66,6 +68,7 @@ impl Desk {
     fn command(&self, program: &str, arguments: &[&str]) -> Command {
         let mut command = Command::new(program);
         command.args(arguments).env("DISPLAY", &self.display).env_remove("WAYLAND_DISPLAY");
+        command.env("WINIT_X11_SCALE_FACTOR", self.scale.to_string());
         command.stdout(Stdio::null()).stderr(Stdio::null());
         command
     }
