@@ -109,6 +109,12 @@ fn materials_may_be_written_short_or_long() {
 }
 
 #[test]
+fn absorption_may_be_given_by_its_coefficients() {
+    let found = scene("[material.a]\nabsorb = [0, 0.1, 7]\n");
+    assert_eq!(found.materials[0].material.absorb, Vec3f::new(0.0, 0.1, 7.0));
+}
+
+#[test]
 fn things_of_all_kinds() {
     let scene = scene(&format!(
         "{CAMERA}[material.red]\ncolor = [1, 0, 0]\n\
@@ -269,6 +275,7 @@ fn every_wrong_value_is_refused_with_its_line() {
         (3, "[render]\nbackground = { up = [0, 0, 0] }".to_owned()),
         (3, "[material.a]\nior = 0".to_owned()),
         (3, "[material.a]\nabsorb = { color = [0, 1, 1] }".to_owned()),
+        (3, "[material.a]\nabsorb = [0, -1, 1]".to_owned()),
         (3, "[material.a]\nreflect = \"mirror\"".to_owned()),
         (3, "[material.a]\ntransmit = -0.1".to_owned()),
         (3, "[material.a]\nspecular = { exponent = -1 }".to_owned()),

@@ -132,7 +132,7 @@ impl Random {
         let strength = self.strength();
         let color = self.color();
         let material = &mut scene.materials[index].material;
-        match self.0.below(23) {
+        match self.0.below(24) {
             0 => material.ambient = strength,
             1 => material.diffuse = strength,
             2 => material.transmit = color,
@@ -153,6 +153,7 @@ impl Random {
             14 => scene.settings.tone = Tone::Reinhard,
             15 => scene.background = Background::Color(color),
             16 => scene.ambient = color,
+            22 => material.absorb = color,
             17 => scene.cameras[self.0.below(2) as usize].camera.eye = self.point() + Vec3d::splat(200.0),
             18 => scene.cameras[self.0.below(2) as usize].camera.vfov = self.0.uniform(1.0, 179.0),
             19 => scene.lights[self.0.below(3) as usize].color = color,
@@ -338,7 +339,6 @@ fn what_the_file_does_not_state_is_refused() {
     refused(EVERYTHING, |scene| scene.materials[0].name.push('x'), "renamed");
     refused(EVERYTHING, |scene| scene.materials.last_mut().unwrap().material.diffuse = 0.123, "does not stand");
     refused(EVERYTHING, |scene| scene.lights[0].kind = scene.lights[1].kind, "kind");
-    refused(EVERYTHING, |scene| scene.materials[0].material.absorb = Vec3f::ONE, "absorb");
     let furnished = "version = 1\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
     refused(furnished, |scene| scene.cameras[0].camera.vfov = 20.0, "no camera");
     refused(furnished, |scene| scene.lights[0].color = Vec3f::ZERO, "lights");

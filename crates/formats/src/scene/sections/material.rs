@@ -237,12 +237,17 @@ struct Absorb {
 }
 
 impl FromLoose for AbsorbValue {
-    const EXPECTED: &'static str = "{ color, distance }: the colour left of white light after a distance";
-    const SCHEMA: &'static str = "";
+    const EXPECTED: &'static str =
+        "{ color, distance }: the colour left of white light after a distance; or three coefficients, not negative";
+    const SCHEMA: &'static str = COEFFICIENTS;
     type Table = Absorb;
 
     fn from_loose(loose: Loose<Absorb>) -> Result<Self, String> {
-        let Loose::Table(Absorb { color: Color(color), distance }) = loose else { return Err(String::new()) };
+        let Absorb { color: Color(color), distance } = match loose {
+            Loose::Table(absorb) => absorb,
+            Loose::Triple(coefficients) => return Self::from_coefficients(coefficients),
+            _ => return Err(String::new()),
+        };
         if color.min_component() <= 0.0 || color.max_component() > 1.0 {
             return Err("each component of the colour left must be greater than 0 and at most 1".to_owned());
         }
@@ -252,6 +257,19 @@ impl FromLoose for AbsorbValue {
             true => Ok(Self(coefficients)),
             false => Err("the distance is too small".to_owned()),
         }
+    }
+}
+
+/// The schema of coefficients.
+#[cfg_attr(not(feature = "schema"), allow(dead_code, reason = "only the schema reads it; schemas name each other"))]
+const COEFFICIENTS: &str =
+    r#"{"type": "array", "items": {"type": "number", "minimum": 0}, "minItems": 3, "maxItems": 3}"#;
+
+impl AbsorbValue {
+    fn from_coefficients(coefficients: [f64; 3]) -> Result<Self, String> {
+        let single = Vec3f::from(coefficients.map(|x| x as f32));
+        let is_possible = single.is_finite() && coefficients.iter().all(|&x| x >= 0.0);
+        is_possible.then_some(Self(single)).ok_or_else(String::new)
     }
 }
 

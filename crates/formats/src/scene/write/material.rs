@@ -11,10 +11,6 @@ use crate::scene::sections::plain_ior;
 
 /// Change the section of a material.
 pub(super) fn material(patch: &mut Patch, table: &Node, old: &Material, new: &Material) -> Result<(), Fault> {
-    if old.absorb != new.absorb {
-        let what = "what a material absorbs cannot be written back: no colour gives these coefficients exactly";
-        return Err(Fault::new(table.span.clone(), what));
-    }
     set_all(
         patch,
         table,
@@ -23,6 +19,8 @@ pub(super) fn material(patch: &mut Patch, table: &Node, old: &Material, new: &Ma
             ("diffuse", changed(old, new, |m| m.diffuse, single)),
             ("transmit", changed(old, new, |m| m.transmit, strength)),
             ("ior", ior(table, old, new)),
+            // As coefficients: few are those of a colour to the bit.
+            ("absorb", changed(old, new, |m| m.absorb, |absorb| list(absorb.to_array().map(single)))),
         ],
     )?;
     if old.color != new.color {

@@ -34,7 +34,7 @@ fn camera_header(name: &str) -> String {
 /// states; and cameras that are new by their name. `file` stands for the text in messages.
 ///
 /// # Errors
-/// [`ErrorKind::Unsupported`] for all other changes, for what a material absorbs, and where the text is written in a way
+/// [`ErrorKind::Unsupported`] for all other changes, and where the text is written in a way
 /// in which a value has no place. [`ErrorKind::Input`] if the text is not a scene.
 pub fn write_back(file: &Path, text: &str, old: &Scene, new: &Scene) -> Result<String, Error> {
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
