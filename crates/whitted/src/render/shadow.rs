@@ -72,9 +72,7 @@ impl ShadowBatch {
         self.filtered.resolve(context, scratch, samples);
         self.rows.clear();
     }
-}
 
-impl ShadowBatch {
     /// Note which rays nothing is in the way of, in the order of the rows, and keep those that transparent things are.
     fn sort_out(&mut self) {
         let [r, g, b] = [7, 8, 9].map(|row| self.rows.floats(row));
