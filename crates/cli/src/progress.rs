@@ -53,6 +53,22 @@ impl Display {
     }
 }
 
+impl Display {
+    /// Shows how far the tree is, from any thread; of what is told at once the greatest share stays.
+    pub(crate) fn built(&self, share: f32) {
+        const STEPS: u64 = 1000;
+        match self {
+            Self::Quiet => {}
+            Self::Lines(ticker) => line_if_due(ticker, |_| format!("building the tree {:.0} %", 100.0 * share)),
+            Self::Bar(bar) => {
+                bar.set_message("building");
+                bar.set_length(STEPS);
+                bar.set_position(bar.position().max((STEPS as f32 * share) as u64));
+            }
+        }
+    }
+}
+
 impl paper::Watch for Display {
     fn at(&self, part: f64, what: &str) {
         const STEPS: f64 = 1000.0;

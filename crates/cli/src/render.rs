@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let scene = timed(&mut report.load, || scene(arguments))?;
     let rectangle = arguments.picture.rectangle(scene.settings.size)?;
     stop_if(cancel)?;
-    let prepared = timed(&mut report.build, || pool.install(|| build(&scene, arguments)))?;
+    let prepared = timed(&mut report.build, || pool.install(|| build(&scene, arguments, cancel)))?;
     let classic = timed(&mut report.build, || {
         variant.map(|variant| pool.install(|| variant.build(prepared.geometry().primitives())))
     });
@@ -127,10 +127,16 @@ fn scene(arguments: &RenderArguments) -> Result<Scene, Failure> {
     Ok(scene)
 }
 
-fn build(scene: &Scene, arguments: &RenderArguments) -> Result<Prepared, Failure> {
+fn build(scene: &Scene, arguments: &RenderArguments, cancel: &Cancel) -> Result<Prepared, Failure> {
     let options = BuildOptions { kind: arguments.execution.tree_kind(), ..BuildOptions::default() };
-    let prepared = Prepared::new(scene, &options);
-    prepared.map_err(|error| Failure::Scene(format!("{}: {error}", arguments.scene.scene.display())))
+    let display = Display::new(arguments.verbosity.quiet);
+    let prepared = Prepared::new_until(scene, &options, &|share| {
+        display.built(share);
+        cancel.is_cancelled()
+    });
+    display.finish();
+    let prepared = prepared.map_err(|e| Failure::Scene(format!("{}: {e}", arguments.scene.scene.display())))?;
+    prepared.ok_or(Failure::Interrupted)
 }
 
 /// What is to be rendered, and how.

@@ -2,7 +2,7 @@
 
 use crate::host::{Host, Opened};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
@@ -56,12 +56,33 @@ pub(crate) enum News {
     Broken(String),
 }
 
-/// The opening thread, from outside. It ends by itself when this is dropped, at the latest when it has built its tree.
+/// The opening thread, from outside. It ends by itself when this is dropped.
 pub(crate) struct Opener {
     orders: Sender<()>,
     news: Receiver<News>,
     activity: Arc<Mutex<Activity>>,
+    built: Arc<Share>,
     closing: Arc<AtomicBool>,
+}
+
+/// A share that only grows, until it is set back.
+#[derive(Debug, Default)]
+struct Share(AtomicU32);
+
+impl Share {
+    fn set_back(&self) {
+        self.0.store(0, Ordering::Relaxed);
+    }
+
+    /// Positive numbers have the order of their bits. Tells whether it has grown by a hundredth.
+    fn grow(&self, share: f32) -> bool {
+        let before = f32::from_bits(self.0.fetch_max(share.max(0.0).to_bits(), Ordering::Relaxed));
+        (before * 100.0).floor() < (share * 100.0).floor()
+    }
+
+    fn get(&self) -> f32 {
+        f32::from_bits(self.0.load(Ordering::Relaxed))
+    }
 }
 
 impl Opener {
@@ -78,7 +99,7 @@ impl Opener {
         let (orders, inbox) = channel();
         let (outbox, news) = channel();
         let activity = Arc::<Mutex<Activity>>::default();
-        let closing = Arc::new(AtomicBool::new(false));
+        let (built, closing) = (Arc::<Share>::default(), Arc::new(AtomicBool::new(false)));
         let mut work = Work {
             options,
             threads,
@@ -86,13 +107,15 @@ impl Opener {
             outbox,
             wake,
             activity: Arc::clone(&activity),
+            built: Arc::clone(&built),
             closing: Arc::clone(&closing),
             watched: vec![Watched::new(host.path().to_owned())],
             current: None,
+            gave_up: false,
             host,
         };
         std::thread::Builder::new().name("opener".to_owned()).spawn(move || work.run())?;
-        Ok(Self { orders, news, activity, closing })
+        Ok(Self { orders, news, activity, built, closing })
     }
 
     /// Read the scene again, even if its files have not changed.
@@ -109,6 +132,11 @@ impl Opener {
     /// What it is doing.
     pub(crate) fn activity(&self) -> Activity {
         self.activity.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// The share of the tree that is built, 0 to 1; what it says means nothing unless a tree is being built.
+    pub(crate) fn built_share(&self) -> f32 {
+        self.built.get()
     }
 }
 
@@ -130,7 +158,12 @@ impl Watched {
         Self { stamp: stamp(&path), path }
     }
 
-    /// True if it is another file now than when this was last asked.
+    /// True if it is another file now than when [`changed`](Self::changed) was last asked.
+    fn is_outdated(&self) -> bool {
+        stamp(&self.path) != self.stamp
+    }
+
+    /// As [`is_outdated`](Self::is_outdated), and remembers how it is now.
     fn changed(&mut self) -> bool {
         let now = stamp(&self.path);
         std::mem::replace(&mut self.stamp, now) != now
@@ -152,10 +185,13 @@ struct Work {
     outbox: Sender<News>,
     wake: Arc<dyn Fn() + Send + Sync>,
     activity: Arc<Mutex<Activity>>,
+    built: Arc<Share>,
     closing: Arc<AtomicBool>,
     watched: Vec<Watched>,
     /// What was told last.
     current: Option<Ready>,
+    /// The last build was given up for the next one, which is not: files that are written all the time shall be seen.
+    gave_up: bool,
 }
 
 impl Work {
@@ -200,38 +236,51 @@ impl Work {
         let saved = self.watched.iter().filter_map(|watched| watched.stamp).map(|(time, _)| time).max();
         // Before it is idle: whoever sees it idle has heard of what it did.
         let told = result.map(|ready| {
-            self.tell(News::Ready(Box::new(Ready { saved: saved.filter(|_| changed), ..ready })));
+            if let Some(ready) = ready {
+                self.tell(News::Ready(Box::new(Ready { saved: saved.filter(|_| changed), ..ready })));
+            }
         });
         self.set(Activity::Idle);
         told
     }
 
-    fn prepare(&mut self, opened: Opened, read_time: Duration) -> Result<Ready, String> {
+    /// Make a scene ready; `None` if its files have changed again before the tree was built.
+    fn prepare(&mut self, opened: Opened, read_time: Duration) -> Result<Option<Ready>, String> {
         let Opened { scene, files, warnings } = opened;
         self.watch(files);
         self.tell(News::Read(scene.settings.size));
         let start = Instant::now();
         let same = self.current.as_ref().filter(|ready| difference(&ready.scene, &scene) != Change::Geometry);
         let prepared = match same {
-            Some(ready) => ready.prepared.with_look_of(&scene),
+            Some(ready) => ready.prepared.with_look_of(&scene).map(Some),
             None => self.build(&scene),
         };
-        let prepared = Arc::new(prepared.map_err(|error| format!("{}: {error}", self.host.path().display()))?);
+        let prepared = prepared.map_err(|error| format!("{}: {error}", self.host.path().display()))?;
+        self.gave_up = prepared.is_none();
+        let Some(prepared) = prepared.map(Arc::new) else { return Ok(None) };
         let (bounds, build_time) = match same {
             Some(ready) => (ready.bounds, Duration::ZERO),
             None => (scene.bounds().map(|(lo, hi)| [lo, hi]), start.elapsed()),
         };
         let ready = Ready { scene: Arc::new(scene), prepared, bounds, warnings, read_time, build_time, saved: None };
         self.current = Some(ready.clone());
-        Ok(ready)
+        Ok(Some(ready))
     }
 
-    fn build(&self, scene: &Scene) -> Result<Prepared, whitted::scene::SceneError> {
+    fn build(&self, scene: &Scene) -> Result<Option<Prepared>, whitted::scene::SceneError> {
+        self.built.set_back();
         self.set(Activity::Building(scene.primitive_count(), Instant::now()));
         // A pool of its own: the picture of before must be able to move meanwhile.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build();
         let options = &self.options;
-        let build = || Prepared::new(scene, options);
+        let Self { built, closing, watched, gave_up, .. } = self;
+        let watch = |share| {
+            let is_next = built.grow(share);
+            // Whoever has saved again does not want to wait for the tree of before.
+            let is_outdated = || watched.iter().any(Watched::is_outdated);
+            closing.load(Ordering::Relaxed) || !gave_up && is_next && is_outdated()
+        };
+        let build = || Prepared::new_until(scene, options, &watch);
         pool.map_or_else(|_| build(), |pool| pool.install(build))
     }
 

@@ -10,7 +10,7 @@ use whitted::scene::{Camera, Light, LightKind, NamedCamera, NamedMaterial, Prepa
 use whitted::shading::{Material, Texture};
 use whitted::tree::BuildOptions;
 use whitted_viewer::{
-    Action, Button, Destination, Effect, Host, Input, Key, Opened, Options, Session, Shot, Side, Stage,
+    Action, Activity, Button, Destination, Effect, Host, Input, Key, Opened, Options, Session, Shot, Side, Stage,
 };
 
 /// A machine that is busy elsewhere is given this long for anything.
@@ -264,6 +264,45 @@ fn a_scene_that_is_broken_from_the_start_can_be_mended() {
     drag(&mut session, Button::Middle, [0.0, 0.0]);
     desk.edit(Ok(scene()));
     serve_until(&mut session, "a picture", |session| session.finished().is_some());
+}
+
+/// The scene with so many spheres more.
+fn with_many(count: u32) -> Scene {
+    let place = |i: f64| Vec3d::new((i * 1.7).sin(), (i * 2.3).cos(), (i * 0.9).sin()) * 3.0;
+    let mut scene = scene();
+    scene.spheres.extend((0..count).map(|i| (place(i.into()), 0.01, 0)));
+    scene
+}
+
+#[test]
+fn a_tree_tells_how_far_it_is() {
+    let desk = Desk::new(with_many(60_000));
+    let mut session = session(&desk);
+    let shares = std::cell::RefCell::new(Vec::new());
+    serve_until(&mut session, "the tree", |session| {
+        let share = session.built_share();
+        if matches!(session.activity(), Activity::Building(60_040, _)) {
+            shares.borrow_mut().push(share);
+        }
+        session.scene().is_some()
+    });
+    let shares = shares.into_inner();
+    assert!(shares.is_sorted() && shares.iter().any(|&share| share > 0.0 && share < 1.0), "{shares:?}");
+    assert_eq!(session.built_share(), 1.0);
+}
+
+#[test]
+fn a_tree_that_is_out_of_date_is_given_up() {
+    let desk = Desk::new(with_many(200_000));
+    let mut session = session(&desk);
+    serve_until(&mut session, "some of the tree", |session| {
+        matches!(session.activity(), Activity::Building(..)) && session.built_share() > 0.0
+    });
+    desk.edit(Ok(scene()));
+    serve_until(&mut session, "a scene", |session| session.scene().is_some());
+    assert_eq!(session.scene().unwrap().spheres.len(), 40, "the scene of before was built to its end");
+    rest(&mut session);
+    assert_is_exact(&session, &scene());
 }
 
 #[test]

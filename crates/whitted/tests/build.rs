@@ -2,6 +2,7 @@
 
 mod common;
 
+use std::sync::Mutex;
 use whitted::geometry::{Primitives, Sphere};
 use whitted::math::{SplitMix64, Vec3, Vec3f};
 use whitted::tree::{BuildOptions, Tree, TreeKind};
@@ -49,6 +50,39 @@ fn threads_do_not_change_a_tree() {
             assert!(with(threads) == one, "{kind:?}, {threads} threads");
         }
     }
+}
+
+#[test]
+fn a_build_tells_how_far_it_is_and_can_be_stopped() {
+    let primitives = surface(120, 2000);
+    for kind in KINDS {
+        let told = Mutex::new(Vec::new());
+        let tell = |share| told.lock().unwrap().push(share);
+        let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+        let build = |stop| one_thread.install(|| Tree::build_until(&primitives, &kind.into(), stop));
+        let told_of = |share| {
+            tell(share);
+            false
+        };
+        let tree = build(&told_of).expect("nothing stopped it");
+        assert_eq!(format!("{tree:?}"), format!("{:?}", Tree::build(&primitives, &kind.into())));
+        let shares = std::mem::take(&mut *told.lock().unwrap());
+        assert!(shares.len() > 5 && shares.is_sorted() && shares[0] > 0.0, "{kind:?}: {shares:?}");
+        // The last but one: everything has grown and is to be written down.
+        assert!(
+            (0.89..0.91).contains(&shares[shares.len() - 2]) && shares.last() == Some(&1.0),
+            "{kind:?}: {shares:?}"
+        );
+        let half = |share| {
+            tell(share);
+            share > 0.4
+        };
+        assert!(build(&half).is_none());
+        let shares = told.into_inner().unwrap();
+        assert!(shares.iter().filter(|&&share| share > 0.4).count() == 1, "asked again: {shares:?}");
+    }
+    let nothing = Tree::build_until(&primitives, &TreeKind::None.into(), &|share| share == 1.0);
+    assert!(nothing.is_none(), "the last answer counts, too");
 }
 
 #[test]

@@ -403,6 +403,11 @@ impl Session {
         self.opener.activity()
     }
 
+    /// The share of the tree that is built, 0 to 1, while it is being built.
+    pub fn built_share(&self) -> f32 {
+        self.opener.built_share()
+    }
+
     /// The camera of this moment.
     pub fn camera(&self) -> &Camera {
         self.navigator.camera()

@@ -4,7 +4,7 @@ use super::{Scene, SceneError, Space};
 use crate::geometry::Primitives;
 use crate::math::{Aabb, Affine, Vec3, Vec3d, Vec3f};
 use crate::scene::Mesh;
-use crate::tree::{BuildOptions, Tree};
+use crate::tree::{BuildOptions, Stop, Tree};
 
 /// The part of a prepared scene that is costly to make and that no colour, light or camera changes.
 #[derive(Debug)]
@@ -20,12 +20,12 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Bring the shapes of `scene` into internal space and build the tree.
+    /// Bring the shapes of `scene` into internal space and build the tree. `None` if `stop` said so.
     ///
     /// # Errors
     /// A mesh with impossible indices or attributes, or more primitives than can be numbered. Primitives that are
     /// degenerate or not finite are no error: they are never hit, and [`dropped`](Self::dropped) counts them.
-    pub(super) fn new(scene: &Scene, options: &BuildOptions) -> Result<Self, SceneError> {
+    pub(super) fn new(scene: &Scene, options: &BuildOptions, stop: Stop<'_>) -> Result<Option<Self>, SceneError> {
         let (primitives, space) = scene.primitives()?;
         let dropped = (0..primitives.bounded_count() as u32).filter(|&id| primitives.primitive_bounds(id).is_none());
         let dropped = dropped.count();
@@ -34,9 +34,9 @@ impl Geometry {
             Some(*end)
         });
         let mesh_ends = mesh_ends.collect();
-        let tree = Tree::build(&primitives, options);
         let bounds = primitives.bounds();
-        Ok(Self { space, tree, bounds, mesh_ends, dropped, primitives })
+        let tree = Tree::build_until(&primitives, options, stop);
+        Ok(tree.map(|tree| Self { space, tree, bounds, mesh_ends, dropped, primitives }))
     }
 
     /// The primitives, in internal space.

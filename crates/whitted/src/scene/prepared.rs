@@ -2,7 +2,7 @@
 
 use super::{Change, Geometry, Look, NamedCamera, Scene, SceneError, difference};
 use super::{check, look};
-use crate::tree::BuildOptions;
+use crate::tree::{BuildOptions, Stop};
 use std::sync::Arc;
 
 /// A checked scene: geometry with its tree, and how it looks.
@@ -18,10 +18,18 @@ impl Prepared {
     /// # Errors
     /// What [`SceneError`] lists.
     pub fn new(scene: &Scene, options: &BuildOptions) -> Result<Self, SceneError> {
+        Self::new_until(scene, options, &|_| false).map(|prepared| prepared.expect("nothing stops it"))
+    }
+
+    /// As [`new`](Self::new), until `stop` says so: then there is none. `stop` is told how far the tree is.
+    ///
+    /// # Errors
+    /// What [`SceneError`] lists.
+    pub fn new_until(scene: &Scene, options: &BuildOptions, stop: Stop<'_>) -> Result<Option<Self>, SceneError> {
         check::scene(scene)?;
-        let geometry = Geometry::new(scene, options)?;
+        let Some(geometry) = Geometry::new(scene, options, stop)? else { return Ok(None) };
         let look = Look::new(scene, &geometry, look::primitive_materials(scene))?;
-        Ok(Self { geometry: Arc::new(geometry), look })
+        Ok(Some(Self { geometry: Arc::new(geometry), look }))
     }
 
     /// The prepared scene after the change from `old`, from which this one was prepared, to `new`, and what that was:

@@ -41,6 +41,10 @@ pub(crate) use fit::Fit;
 pub(crate) use goal::{Any, Closest, Goal, Next};
 pub(crate) use walk::{offer_crossings, sound};
 
+/// Told what share of a build is done, from any thread, until it is 1; of what is told from several threads at once the
+/// greatest holds. True ends the build.
+pub type Stop<'a> = &'a (dyn Fn(f32) -> bool + Sync);
+
 /// Which splits the builder may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum TreeKind {

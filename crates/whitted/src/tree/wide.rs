@@ -4,7 +4,7 @@ use super::build::{self, BuildOptions};
 use super::fit::Fit;
 use super::leaf::{LeafKind, Leaves};
 use super::node::{Child, ChildKind, Node};
-use super::{TreeKind, validate};
+use super::{Stop, TreeKind, validate};
 use crate::geometry::Primitives;
 use crate::math::Aabb;
 use simd::F32Lanes;
@@ -42,6 +42,12 @@ pub struct TreeReport {
 impl Tree {
     /// Build a tree. Bounded in time, memory and depth for any input; uses the current rayon pool.
     pub fn build(primitives: &Primitives, options: &BuildOptions) -> Self {
+        Self::build_until(primitives, options, &|_| false).expect("nothing stops it")
+    }
+
+    /// As [`build`](Self::build), until `stop` says so: then there is no tree. It is asked some hundred times for a
+    /// million primitives, with the share that is done.
+    pub fn build_until(primitives: &Primitives, options: &BuildOptions, stop: Stop<'_>) -> Option<Self> {
         let mut tree = Self {
             nodes: Vec::new(),
             leaves: Leaves::default(),
@@ -50,11 +56,11 @@ impl Tree {
             report: TreeReport::default(),
         };
         if options.kind != TreeKind::None {
-            let flat = build::build(primitives, tree.fit.scale(), tree.fit.padding(), options);
+            let flat = build::build(primitives, tree.fit.scale(), tree.fit.padding(), options, stop)?;
             (tree.nodes, tree.leaves, tree.report) = (flat.nodes, flat.leaves, flat.report);
         }
         tree.report.bytes = size_of_val(&tree.nodes[..]) + tree.leaves.bytes();
-        tree
+        (!stop(1.0)).then_some(tree)
     }
 
     /// Choose the scale for a scene of these bounds.

@@ -15,21 +15,23 @@ mod clip;
 mod cost;
 mod exact_sweep;
 mod flatten;
+mod growth;
 mod object_split;
 mod plan;
 mod reference;
 mod section;
 mod spatial_split;
 
-use super::TreeKind;
 use super::leaf::{BLOCK, LeafKind};
 use super::node::MAX_LEAF_BLOCKS;
+use super::{Stop, TreeKind};
 use crate::geometry::{Kind, Primitives};
 use binary::{BinaryNode, Content};
 pub(crate) use bounds::Bounds;
 pub(crate) use clip::Solid;
 pub(super) use cost::WIDE_NODE as WIDE_NODE_COST;
 pub(super) use flatten::Flat;
+use growth::Growth;
 use object_split::ObjectSplit;
 use plan::Costs;
 use rayon::prelude::*;
@@ -63,22 +65,29 @@ impl From<TreeKind> for BuildOptions {
 }
 
 /// Build the wide tree over all sound bounded primitives, in coordinates multiplied by `scale`; every box of the tree
-/// grows by `padding`.
-pub(super) fn build(primitives: &Primitives, scale: f32, padding: f32, options: &BuildOptions) -> Flat {
+/// grows by `padding`. `None` if `stop` said so.
+pub(super) fn build(
+    primitives: &Primitives,
+    scale: f32,
+    padding: f32,
+    options: &BuildOptions,
+    stop: Stop<'_>,
+) -> Option<Flat> {
     let mut references = sound_references(primitives, scale);
     let count = references.len();
     let dropped = primitives.bounded_count() - count;
     if count == 0 {
-        return Flat::empty(dropped);
+        return Some(Flat::empty(dropped));
     }
     let bounds = around_all(&references);
     references.resize(count + spare_room(options.kind, count), Reference::NONE);
-    let builder = Builder { primitives, scale, options, root_area: bounds.half_area(), level: Level::best() };
+    let (root_area, growth) = (bounds.half_area(), Growth::new(references.len(), stop));
+    let builder = Builder { primitives, scale, options, root_area, level: Level::best(), growth };
     let mut pieces = Vec::new();
-    builder.grow(Cell { references: &mut references, count, first: 0, level: 0, bounds }, &mut pieces);
+    builder.grow(Cell { references: &mut references, count, first: 0, level: 0, bounds }, &mut pieces)?;
     let nodes = pieces.concat();
     drop(pieces);
-    flatten::flatten(primitives, scale, padding, &nodes, &references, dropped)
+    Some(flatten::flatten(primitives, scale, padding, &nodes, &references, dropped))
 }
 
 /// References to all primitives that can be hit, in their order.
@@ -113,6 +122,7 @@ struct Builder<'a> {
     options: &'a BuildOptions,
     root_area: f32,
     level: Level,
+    growth: Growth<'a>,
 }
 
 /// The references of a node: the first `count` of a slice whose rest is room, starting at `first` of the whole array.
@@ -176,13 +186,13 @@ enum Split {
 }
 
 impl Builder<'_> {
-    /// Build the subtree of a cell, in parallel if that is worth it, as pieces of the array of nodes.
-    fn grow(&self, cell: Cell<'_>, pieces: &mut Vec<Vec<BinaryNode>>) -> Grown {
+    /// Build the subtree of a cell, in parallel if that is worth it, as pieces of the array of nodes. `None`: stopped.
+    fn grow(&self, cell: Cell<'_>, pieces: &mut Vec<Vec<BinaryNode>>) -> Option<Grown> {
         if cell.count <= PARALLEL {
-            let mut nodes = Vec::new();
+            let (mut nodes, len) = (Vec::new(), cell.references.len());
             let grown = self.node(cell, &mut nodes);
             pieces.push(nodes);
-            return grown;
+            return self.growth.goes_on_after(len).then_some(grown);
         }
         let split = self.choose(&cell).unwrap_or(Split::Middle);
         let (left, right) = self.apply(split, cell);
@@ -190,9 +200,9 @@ impl Builder<'_> {
         let (left, right) = rayon::join(|| self.grow(left, pieces), || self.grow(right, &mut right_pieces));
         pieces.append(&mut right_pieces);
         let mut parent = Vec::new();
-        let grown = self.join(left, right, &mut parent);
+        let grown = self.join(left?, right?, &mut parent);
         pieces.push(parent);
-        grown
+        Some(grown)
     }
 
     /// Build the subtree of a cell.
