@@ -5,8 +5,10 @@ use std::path::Path;
 
 use formats::{ErrorKind, Format, LoadOptions, camera_block, parse, write_back};
 use whitted::math::{SplitMix64, Vec3d, Vec3f};
-use whitted::scene::{Antialias, Background, Camera, Change, LightKind, NamedCamera, Scene, Tone, difference};
-use whitted::shading::{Reflectance, SpecularModel, Texture};
+use whitted::scene::{
+    Antialias, Background, Camera, Change, Light, LightKind, NamedCamera, NamedMaterial, Scene, Tone, difference,
+};
+use whitted::shading::{Material, Reflectance, SpecularModel, Texture};
 
 fn read(text: &str) -> Scene {
     let loaded = parse(Format::Toml, Path::new("scene.toml"), text.as_bytes().to_vec(), &LoadOptions::default());
@@ -301,6 +303,103 @@ fn sections_that_are_not_there_are_appended() {
     assert_eq!(camera.camera, added.camera);
 }
 
+const TWO_LIGHTS: &str = "\
+version = 1
+camera = { eye = [0, 0, 5], look_at = [0, 0, 0] }
+
+# The lamp.
+[[light]]
+point = [1, 2, 3] # here
+# as bright as the sun
+intensity = 2
+
+# The sun.
+[[light]]
+direction = [0, -1, 0]
+
+# The end.
+";
+
+fn lamp(x: f64) -> Light {
+    Light { kind: LightKind::Point { position: Vec3d::new(x, 0.5, 0.0) }, color: Vec3f::ONE, inverse_square: false }
+}
+
+#[test]
+fn lights_come_and_go() {
+    let lamp_text = "[[light]]\npoint = [1, 2, 3] # here\n# as bright as the sun\nintensity = 2\n\n";
+    let sun_text = "[[light]]\ndirection = [0, -1, 0]\n\n";
+    let new_text = "[[light]]\npoint = [7, 0.5, 0]\n\n";
+    let without = |part: &str| TWO_LIGHTS.replace(part, "");
+    assert_eq!(edited(TWO_LIGHTS, |scene| _ = scene.lights.remove(0)), without(lamp_text));
+    assert_eq!(edited(TWO_LIGHTS, |scene| _ = scene.lights.remove(1)), without(sun_text));
+    let none = edited(TWO_LIGHTS, |scene| scene.lights.clear());
+    assert_eq!(none, without(lamp_text).replace(sun_text, ""));
+    let only = edited(TWO_LIGHTS, |scene| scene.lights = vec![Light { inverse_square: true, ..lamp(7.0) }]);
+    assert!(only.contains("[[light]]\npoint = [7, 0.5, 0] # here\n") && only.contains("intensity = 1\n"), "{only}");
+    assert_eq!(
+        edited(TWO_LIGHTS, |s| s.lights.push(lamp(7.0))),
+        TWO_LIGHTS.replace("\n# The end", &format!("\n{new_text}# The end"))
+    );
+    let between = format!("{lamp_text}{new_text}");
+    assert_eq!(edited(TWO_LIGHTS, |s| s.lights.insert(1, lamp(7.0))), TWO_LIGHTS.replace(lamp_text, &between));
+    // The first one by far is another kind of light now.
+    let spot = LightKind::Spot { position: Vec3d::ONE, look_at: Vec3d::ZERO, inner: 10.0, outer: 20.0 };
+    let other = edited(TWO_LIGHTS, |scene| scene.lights[0] = Light { kind: spot, ..lamp(0.0) });
+    let spot_text = "[[light]]\nspot = [1, 1, 1]\nlook_at = [0, 0, 0]\ninner = 10\nouter = 20\n\n";
+    assert!(other.contains(spot_text) && other.contains(sun_text) && !other.contains("point"), "{other}");
+    let first = edited("version = 1\ncamera = { eye = [0, 0, 5], look_at = [0, 0, 0] }", |s| s.lights.push(lamp(7.0)));
+    assert!(first.ends_with("}\n\n[[light]]\npoint = [7, 0.5, 0]\n"), "{first}");
+}
+
+#[test]
+fn whatever_becomes_of_the_lights_is_read_as_that() {
+    for text in [EVERYTHING.to_owned(), TWO_LIGHTS.to_owned(), TWO_LIGHTS.replace('\n', "\r\n")] {
+        for seed in 0..500 {
+            let mut random = Random(SplitMix64::new(seed));
+            edited(&text, |scene| {
+                for _ in 0..1 + random.0.below(5) {
+                    let (count, color) = (scene.lights.len() as u32, random.color());
+                    let index = random.0.below(count.max(1)) as usize;
+                    let kind = match random.0.below(2) {
+                        0 => LightKind::Point { position: random.point() },
+                        _ => LightKind::Directional { direction: random.point() + Vec3d::splat(1000.0) },
+                    };
+                    match random.0.below(4) {
+                        0 => scene.lights.insert(index, Light { kind, color, inverse_square: random.0.below(2) == 0 }),
+                        1 if count > 0 => _ = scene.lights.remove(index),
+                        2 if count > 0 => scene.lights[index].kind = kind,
+                        _ if count > 0 => scene.lights[index].color = color,
+                        _ => {}
+                    }
+                }
+            });
+        }
+    }
+}
+
+#[test]
+fn materials_that_things_get_by_themselves_can_be_stated() {
+    let text = "version = 1 # one\n[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n[[sphere]]\ncenter = [0, 0, 0]\n\
+                radius = 1\n[[generate]]\nkind = \"sphere-cube\"\ncount = 10\nfamily = \"mix\"\n";
+    let old = read(text);
+    let mut new = old.clone();
+    let names: Vec<&str> = old.materials.iter().map(|named| named.name.as_str()).collect();
+    assert!(names.len() > 2 && names.contains(&"default") && names.contains(&"mix.m0"), "{names:?}");
+    for named in new.materials.iter_mut().filter(|named| ["default", "mix.m0"].contains(&named.name.as_str())) {
+        named.material.reflectance = Reflectance::Fresnel;
+        named.material.diffuse = 0.25;
+        named.material.color = Texture::Color(Vec3f::new(1.0, 0.5, 0.25));
+    }
+    let written = write(text, &old, &new).unwrap();
+    assert!(written.starts_with(text) && written.contains("\n[material.default]\n"), "{written}");
+    assert!(written.contains("\n[material.\"mix.m0\"]\n") && written.matches("[material").count() == 2, "{written}");
+    let found = read(&written);
+    for named in &new.materials {
+        let found = found.materials.iter().find(|found| found.name == named.name);
+        assert_eq!(found, Some(named), "{written}");
+    }
+}
+
 #[test]
 fn line_breaks_stay_what_they_are() {
     let text = EVERYTHING.replace('\n', "\r\n");
@@ -325,22 +424,26 @@ fn what_the_file_does_not_state_is_refused() {
     refused(
         EVERYTHING,
         |scene| {
-            scene.lights.pop();
-        },
-        "lights",
-    );
-    refused(
-        EVERYTHING,
-        |scene| {
             scene.cameras.pop();
         },
         "from above",
     );
     refused(EVERYTHING, |scene| scene.materials[0].name.push('x'), "renamed");
-    refused(EVERYTHING, |scene| scene.materials.last_mut().unwrap().material.diffuse = 0.123, "does not stand");
-    refused(EVERYTHING, |scene| scene.lights[0].kind = scene.lights[1].kind, "kind");
     let furnished = "version = 1\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
     refused(furnished, |scene| scene.cameras[0].camera.vfov = 20.0, "no camera");
     refused(furnished, |scene| scene.lights[0].color = Vec3f::ZERO, "lights");
+    let listed = "version = 1\nlight = [{ point = [0, 1, 2] }]\n[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+    refused(listed, |scene| scene.lights.clear(), "header of its own");
+    refused(listed, |scene| scene.lights.push(scene.lights[0]), "header of its own");
+    // A material of a mesh's own file.
+    let old = {
+        let mut old = read(EVERYTHING);
+        old.materials.push(NamedMaterial { name: "wall.obj:brick".into(), material: Material::default() });
+        old
+    };
+    let mut new = old.clone();
+    new.materials.last_mut().unwrap().material.diffuse = 0.123;
+    let error = write(EVERYTHING, &old, &new).unwrap_err().to_string();
+    assert!(error.contains("does not stand"), "{error}");
     assert_eq!(write("nonsense", &Scene::default(), &Scene::default()).unwrap_err().kind(), ErrorKind::Input);
 }

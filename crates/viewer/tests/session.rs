@@ -445,6 +445,14 @@ fn what_is_changed_by_hand_is_seen_at_once_and_can_be_written_back() {
     let mut changed = scene();
     changed.materials[0].material.diffuse = 0.25;
     changed.lights[0].color = Vec3f::new(0.5, 0.6, 0.7);
+    // A light is added, and another one removed.
+    for lights in [2, 1] {
+        let mut look = session.look().unwrap().clone();
+        look.lights.resize(lights, changed.lights[0]);
+        session.set_look(look);
+        assert_eq!(session.look().unwrap().lights.len(), lights);
+        rest(&mut session);
+    }
     assert!(session.is_changed());
     assert_is_exact(&session, &changed);
     session.write_back();

@@ -39,6 +39,15 @@ pub(super) fn look(file: &SceneFile, source: Source<'_>) -> Result<Scene, Error>
     Builder::begin(file, source, &mut Context::closed(&options)).map(|builder| builder.scene)
 }
 
+/// The names of materials that things get which name none, in a file that may state them or not.
+pub(super) fn implied_materials(file: &SceneFile) -> Vec<String> {
+    let families = file.generate.iter().filter_map(|section| match section.value.materials() {
+        Materials::Family(named) => Some(named),
+        Materials::Named(_) | Materials::Default => None,
+    });
+    families.flatten().map(|named| named.name).chain([DEFAULT.to_owned()]).collect()
+}
+
 struct Builder<'a, 'c, 'o> {
     source: Source<'a>,
     context: &'c mut Context<'o>,

@@ -1,11 +1,10 @@
 //! From changed values to changed text, section by section.
 
-use whitted::math::Vec3f;
-use whitted::scene::{Antialias, Background, Camera, Light, LightKind, Sampling, Scene, Shadows, Tone};
+use whitted::scene::{Antialias, Background, Camera, Sampling, Scene, Shadows, Tone};
 
 use super::literal::{color, list, number, point, single, word};
 use super::patch::Patch;
-use crate::scene::document::{Fault, Node, Value};
+use crate::scene::document::{Fault, Node};
 
 /// A key and its new value, if that is another one.
 pub(super) type Entry = (&'static str, Option<String>);
@@ -106,59 +105,4 @@ fn background(background: Background) -> String {
         Background::Color(flat) => color(flat),
         Background::Gradient { down, up } => format!("{{ up = {}, down = {} }}", color(up), color(down)),
     }
-}
-
-/// Change the section of a light.
-pub(super) fn light(patch: &mut Patch, table: &Node, old: &Light, new: &Light) -> Result<(), Fault> {
-    set_all(patch, table, place(table, &old.kind, &new.kind)?)?;
-    if old.color != new.color {
-        brightness(patch, table, old.color, new.color)?;
-    }
-    let falloff = |inverse_square| word(if inverse_square { "inverse-square" } else { "none" });
-    set_all(patch, table, [("falloff", changed(old, new, |light| light.inverse_square, falloff))])
-}
-
-fn place(table: &Node, old: &LightKind, new: &LightKind) -> Result<Vec<Entry>, Fault> {
-    Ok(match (old, new) {
-        (LightKind::Point { position: a }, LightKind::Point { position: b }) => {
-            vec![("point", changed(a, b, |p| *p, point))]
-        }
-        (LightKind::Directional { direction: a }, LightKind::Directional { direction: b }) => {
-            vec![("direction", changed(a, b, |d| *d, point))]
-        }
-        (
-            LightKind::Spot { position: a, look_at: c, inner: e, outer: g },
-            LightKind::Spot { position: b, look_at: d, inner: f, outer: h },
-        ) => {
-            // Left out, it follows the outer angle.
-            let inner_follows = table.get("inner").is_none() && g != h;
-            vec![
-                ("spot", changed(a, b, |p| *p, point)),
-                ("look_at", changed(c, d, |p| *p, point)),
-                ("inner", if inner_follows { Some(number(*f)) } else { changed(e, f, |x| *x, number) }),
-                ("outer", changed(g, h, |x| *x, number)),
-            ]
-        }
-        _ => return Err(Fault::new(table.span.clone(), "a light cannot be written back as one of another kind")),
-    })
-}
-
-/// Change the colour times the intensity of a light: one of the two alone if that gives the colour to the bit.
-fn brightness(patch: &mut Patch, table: &Node, old: Vec3f, new: Vec3f) -> Result<(), Fault> {
-    let intensity = match table.get("intensity").map(|node| &node.value) {
-        Some(Value::Float(intensity)) => *intensity as f32,
-        Some(Value::Integer(intensity)) => *intensity as f32,
-        _ => 1.0,
-    };
-    let plain = old / intensity;
-    let brighter = new.max_component() / plain.max_component();
-    if brighter.is_finite() && plain * intensity == old && plain * brighter == new {
-        return patch.set(table, "intensity", single(brighter));
-    }
-    let tint = new / intensity;
-    if tint.is_finite() && tint * intensity == new {
-        return patch.set(table, "color", color(tint));
-    }
-    let reset = table.get("intensity").map(|_| single(1.0));
-    set_all(patch, table, [("color", Some(color(new))), ("intensity", reset)])
 }

@@ -3,11 +3,12 @@
 use whitted::math::Vec3f;
 use whitted::shading::{Material, Reflectance, SpecularModel, Texture};
 
-use super::literal::{color, list, single, strength, word};
+use super::literal::{self, color, list, single, strength, word};
 use super::look::{Entry, changed, set_all};
 use super::patch::Patch;
 use crate::scene::document::{Fault, Node, Value};
 use crate::scene::sections::plain_ior;
+use crate::scene::toml;
 
 /// Change the section of a material.
 pub(super) fn material(patch: &mut Patch, table: &Node, old: &Material, new: &Material) -> Result<(), Fault> {
@@ -29,6 +30,23 @@ pub(super) fn material(patch: &mut Patch, table: &Node, old: &Material, new: &Ma
     specular(patch, table, old, new)?;
     reflect(patch, table, old, new)
 }
+
+/// Append a section for a material that has none.
+pub(super) fn append(patch: &mut Patch, name: &str, material: &Material) -> Result<(), Fault> {
+    // All that differs from the default, put into an empty section.
+    let empty = toml::parse(EMPTY)?;
+    let mut section = Patch::new(EMPTY);
+    if let Some(table) = empty.get("m") {
+        self::material(&mut section, table, &Material::default(), material)?;
+    }
+    let section = section.apply();
+    let entries: Vec<_> =
+        section.lines().filter_map(|line| line.split_once(" = ")).map(|(key, value)| (key, value.to_owned())).collect();
+    patch.append(&format!("[material.{}]", literal::key(name)), &entries);
+    Ok(())
+}
+
+const EMPTY: &str = "[m]";
 
 /// Left out, the index follows the kind of reflection.
 fn ior(table: &Node, old: &Material, new: &Material) -> Option<String> {

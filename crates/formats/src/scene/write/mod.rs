@@ -3,6 +3,7 @@
 //! The values are found by their places in the text and replaced one by one; what is not replaced stays, byte by byte:
 //! comments, order, blanks, keys. The changed text is read again before it is given away, and must say what was wanted.
 
+mod light;
 mod literal;
 mod look;
 mod material;
@@ -10,10 +11,10 @@ mod patch;
 
 use std::path::Path;
 
-use whitted::scene::{Camera, Change, NamedCamera, Scene, Settings, difference};
+use whitted::scene::{Camera, Change, Light, NamedCamera, Scene, Settings, difference};
 
-use super::document::{Fault, Node, Value};
-use super::{look_of, toml};
+use super::document::{Fault, Node};
+use super::{build, look_of, toml};
 use crate::error::{Error, ErrorKind, quoted};
 use crate::source::Source;
 use patch::Patch;
@@ -31,7 +32,8 @@ fn camera_header(name: &str) -> String {
 /// `text`, a scene in TOML, with the values that differ between `old`, the scene that was read from it, and `new`.
 ///
 /// Written back are settings, ambient light, background, and the values of cameras, lights and materials that the text
-/// states; and cameras that are new by their name. `file` stands for the text in messages.
+/// states; lights that are new or no more; materials that the text does not state but could; and cameras that are new
+/// by their name. `file` stands for the text in messages.
 ///
 /// # Errors
 /// [`ErrorKind::Unsupported`] for all other changes, and where the text is written in a way
@@ -39,8 +41,10 @@ fn camera_header(name: &str) -> String {
 pub fn write_back(file: &Path, text: &str, old: &Scene, new: &Scene) -> Result<String, Error> {
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let source = Source { file, bytes: body.as_bytes() };
-    let before = look_of(source)?;
-    let wanted = wanted(&before, old, new).map_err(|what| Error::new(ErrorKind::Unsupported, file, what))?;
+    let stated = super::decode(&source, toml::parse)?;
+    let before = build::look(&stated, source)?;
+    let wanted = wanted(&before, &build::implied_materials(&stated), old, new)
+        .map_err(|what| Error::new(ErrorKind::Unsupported, file, what))?;
     let fail = |fault| super::error(&source, fault).blame(ErrorKind::Unsupported);
     let document = toml::parse(body).map_err(fail)?;
     let mut patch = Patch::new(body);
@@ -55,7 +59,7 @@ pub fn write_back(file: &Path, text: &str, old: &Scene, new: &Scene) -> Result<S
 }
 
 /// What the text shall say: `before` with all that differs between `old` and `new`.
-fn wanted(before: &Scene, old: &Scene, new: &Scene) -> Result<Scene, String> {
+fn wanted(before: &Scene, implied: &[String], old: &Scene, new: &Scene) -> Result<Scene, String> {
     if difference(old, new) == Change::Geometry {
         return Err("changed shapes cannot be written back".to_owned());
     }
@@ -64,7 +68,7 @@ fn wanted(before: &Scene, old: &Scene, new: &Scene) -> Result<Scene, String> {
     take_over(&mut wanted.ambient, &old.ambient, &new.ambient);
     take_over(&mut wanted.background, &old.background, &new.background);
     lights(&mut wanted, old, new)?;
-    materials(&mut wanted, old, new)?;
+    materials(&mut wanted, implied, old, new)?;
     cameras(&mut wanted, old, new)?;
     Ok(wanted)
 }
@@ -93,25 +97,33 @@ fn lights(wanted: &mut Scene, old: &Scene, new: &Scene) -> Result<(), String> {
     if old.lights == new.lights {
         return Ok(());
     }
-    if [old.lights.len(), new.lights.len()] != [wanted.lights.len(); 2] {
+    if old.lights.len() != wanted.lights.len() {
         return Err("lights that the file does not state cannot be written back".to_owned());
     }
-    let pairs = old.lights.iter().zip(&new.lights);
-    wanted.lights.iter_mut().zip(pairs).for_each(|(light, (old, new))| take_over(light, old, new));
+    let stated = |(origin, new): (Option<usize>, &Light)| match origin {
+        Some(index) => {
+            let mut light = wanted.lights[index];
+            take_over(&mut light, &old.lights[index], new);
+            light
+        }
+        None => *new,
+    };
+    wanted.lights = light::origins(&old.lights, &new.lights).into_iter().zip(&new.lights).map(stated).collect();
     Ok(())
 }
 
-fn materials(wanted: &mut Scene, old: &Scene, new: &Scene) -> Result<(), String> {
+/// `implied`: names of materials that need not be stated, but can.
+fn materials(wanted: &mut Scene, implied: &[String], old: &Scene, new: &Scene) -> Result<(), String> {
     let names = |scene: &Scene| scene.materials.iter().map(|named| named.name.clone()).collect::<Vec<_>>();
     if names(old) != names(new) {
         return Err("materials cannot be added, removed or renamed".to_owned());
     }
     for (old, new) in old.materials.iter().zip(&new.materials).filter(|(old, new)| old != new) {
-        let stated = wanted.materials.iter_mut().find(|named| named.name == new.name);
-        let Some(stated) = stated else {
-            return Err(format!("the material {} does not stand in this file", quoted(&new.name)));
-        };
-        take_over(&mut stated.material, &old.material, &new.material);
+        match wanted.materials.iter_mut().find(|named| named.name == new.name) {
+            Some(stated) => take_over(&mut stated.material, &old.material, &new.material),
+            None if implied.contains(&new.name) => wanted.materials.push(new.clone()),
+            None => return Err(format!("the material {} does not stand in this file", quoted(&new.name))),
+        }
     }
     Ok(())
 }
@@ -147,16 +159,15 @@ fn write(patch: &mut Patch, document: &Node, before: &Scene, wanted: &Scene) -> 
             }
         }
     }
-    let lights =
-        document.get("light").map_or(&[][..], |node| if let Value::List(items) = &node.value { items } else { &[] });
-    for (table, (old, new)) in lights.iter().zip(before.lights.iter().zip(&wanted.lights)) {
-        look::light(patch, table, old, new)?;
-    }
+    light::lights(patch, document, &before.lights, &wanted.lights)?;
     let materials = document.get("material");
     for (old, new) in before.materials.iter().zip(&wanted.materials) {
         if let Some(table) = materials.and_then(|node| node.get(&new.name)) {
             material::material(patch, table, &old.material, &new.material)?;
         }
+    }
+    for new in wanted.materials.iter().skip(before.materials.len()) {
+        material::append(patch, &new.name, &new.material)?;
     }
     write_cameras(patch, document, &before.cameras, &wanted.cameras)
 }

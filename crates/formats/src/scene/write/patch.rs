@@ -32,8 +32,8 @@ impl<'a> Patch<'a> {
     pub(super) fn apply(mut self) -> String {
         let filled = self.filled.into_iter().map(|(span, entries)| (span, format!("{{ {} }}", entries.join(", "))));
         self.splices.extend(filled);
-        // Stable: what is inserted at one place keeps its order.
-        self.splices.sort_by_key(|(span, _)| span.start);
+        // Stable: what is inserted at one place keeps its order, and comes before what is replaced there.
+        self.splices.sort_by_key(|(span, _)| (span.start, span.end));
         let (mut out, mut done) = (String::with_capacity(self.text.len()), 0);
         for (span, new) in self.splices {
             out.push_str(&self.text[done..span.start]);
@@ -67,11 +67,58 @@ impl<'a> Patch<'a> {
 
     /// Append a section at the end of the text.
     pub(super) fn append(&mut self, header: &str, entries: &[(&str, String)]) {
-        let end = self.text.len();
-        let newline = if self.text.contains("\r\n") { "\r\n" } else { "\n" };
+        let (end, newline) = (self.text.len(), self.newline());
         let first = if self.text.is_empty() || self.text.ends_with('\n') { "" } else { newline };
+        self.splices.push((end..end, format!("{first}{newline}{}", self.section(header, entries))));
+    }
+
+    /// Insert a section below another one.
+    pub(super) fn insert_after(&mut self, table: &Node, header: &str, entries: &[(&str, String)]) -> Result<(), Fault> {
+        let end = self.lines(table)?.end;
+        let newline = self.newline();
+        let section = self.section(header, entries);
+        self.splices.push((end..end, format!("{newline}{newline}{}", section.trim_end())));
+        Ok(())
+    }
+
+    /// Insert a section above another one.
+    pub(super) fn insert_before(
+        &mut self,
+        table: &Node,
+        header: &str,
+        entries: &[(&str, String)],
+    ) -> Result<(), Fault> {
+        let start = self.lines(table)?.start;
+        self.splices.push((start..start, format!("{}{}", self.section(header, entries), self.newline())));
+        Ok(())
+    }
+
+    /// Remove a section: all lines from its header to its last key, and one that is blank below.
+    pub(super) fn remove(&mut self, table: &Node) -> Result<(), Fault> {
+        let Span { start, mut end } = self.lines(table)?;
+        for _ in 0..2 {
+            let next = self.text[end..].strip_prefix("\r\n").or_else(|| self.text[end..].strip_prefix('\n'));
+            end = next.map_or(end, |rest| self.text.len() - rest.len());
+        }
+        self.splices.push((start..end, String::new()));
+        Ok(())
+    }
+
+    /// The lines from the header of a section to its last key, without the last line break.
+    fn lines(&self, table: &Node) -> Result<Span, Fault> {
+        let (Some(Form::Header), Value::Table(entries)) = (self.form(table), &table.value) else {
+            let what = "this is not a section with a header of its own: nothing is added or removed beside it";
+            return Err(Fault::new(table.span.clone(), what));
+        };
+        let start = self.text[..table.span.start].rfind('\n').map_or(0, |newline| newline + 1);
+        let end = entries.iter().map(|(_, node)| self.end(node)).max().unwrap_or(table.span.end);
+        Ok(start..self.line_end(end))
+    }
+
+    fn section(&self, header: &str, entries: &[(&str, String)]) -> String {
+        let newline = self.newline();
         let entries: String = entries.iter().map(|(key, value)| format!("{key} = {value}{newline}")).collect();
-        self.splices.push((end..end, format!("{first}{newline}{header}{newline}{entries}")));
+        format!("{header}{newline}{entries}")
     }
 
     /// How a node is written if it is a table.

@@ -1,17 +1,17 @@
 //! The panel: settings, cameras, materials and lights, live; and what the scene and its picture are made of.
 
+mod lights;
+mod material;
+
 use super::cards::grouped;
 use super::status::short;
-use super::theme::{ACCENT, FAINT, card};
+use super::theme::{ACCENT, FAINT, GAP, card, room, scrolled};
 use crate::action::{Action, Side};
 use crate::session::Session;
-use egui::{
-    Align2, CollapsingHeader, ComboBox, Context, DragValue, Grid, RichText, ScrollArea, Slider, Ui, Window, vec2,
-};
+use egui::{Align2, CollapsingHeader, ComboBox, Context, DragValue, Grid, RichText, Slider, Ui, Window, vec2};
 use whitted::math::{Vec3d, Vec3f};
 use whitted::render::Aov;
-use whitted::scene::{Antialias, Background, Light, LightKind, Settings, Shadows, Tone};
-use whitted::shading::{Material, Reflectance, SpecularModel, Texture};
+use whitted::scene::{Antialias, Settings, Shadows, Tone};
 
 /// Width of the panel in units of layout.
 const WIDTH: f32 = 290.0;
@@ -28,17 +28,18 @@ pub(super) struct Panel {
 
 impl Panel {
     pub(super) fn show(&mut self, context: &Context, session: &mut Session) {
-        let height = (context.content_rect().height() - 24.0).max(60.0);
         let window = Window::new("panel").title_bar(false).resizable(false).movable(false).frame(card());
-        window.anchor(Align2::RIGHT_TOP, vec2(-10.0, 10.0)).fixed_size(vec2(WIDTH, height)).show(context, |ui| {
-            ScrollArea::vertical().max_height(height - 30.0).show(ui, |ui| {
+        let room = room(context);
+        let size = vec2(room.x.min(WIDTH), room.y);
+        window.anchor(Align2::RIGHT_TOP, vec2(-GAP, GAP)).fixed_size(size).show(context, |ui| {
+            scrolled(ui, size, |ui| {
                 ui.set_width(WIDTH);
                 ui.label(RichText::new(session.title()).heading());
                 view(ui, session);
                 section(ui, "Picture", true, |ui| picture(ui, session));
                 section(ui, "Cameras", true, |ui| cameras(ui, session));
                 section(ui, "Materials", false, |ui| self.materials(ui, session));
-                section(ui, "Lights", false, |ui| lights(ui, session));
+                section(ui, "Lights", false, |ui| lights::show(ui, session));
                 section(ui, "Statistics", true, |ui| statistics(ui, session));
             });
         });
@@ -55,7 +56,7 @@ impl Panel {
         });
         let Some(named) = look.materials.get_mut(self.material) else { return };
         let before = named.material.clone();
-        grid(ui, "material", |ui| material(ui, &mut named.material));
+        grid(ui, "material", |ui| material::rows(ui, &mut named.material));
         if named.material != before && named.material.fault().is_none() {
             session.set_look(look);
         }
@@ -202,56 +203,6 @@ fn cameras(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-fn material(ui: &mut Ui, material: &mut Material) {
-    match &mut material.color {
-        Texture::Color(color) => row(ui, "colour", |ui| colour(ui, color)),
-        Texture::Checker { even, odd, size } => row(ui, "colours", |ui| {
-            colour(ui, even);
-            colour(ui, odd);
-            ui.add(DragValue::new(size).speed(0.01).range(1e-6..=f32::MAX));
-        }),
-    }
-    row(ui, "ambient", |ui| strength(ui, &mut material.ambient));
-    row(ui, "diffuse", |ui| strength(ui, &mut material.diffuse));
-    row(ui, "highlight", |ui| amount(ui, &mut material.specular));
-    row(ui, "exponent", |ui| {
-        ui.add(Slider::new(&mut material.exponent, 0.0..=2000.0).logarithmic(true).max_decimals(1));
-    });
-    row(ui, "", |ui| {
-        choice(ui, &mut material.specular_model, &[(SpecularModel::Phong, "Phong"), (SpecularModel::Blinn, "Blinn")]);
-    });
-    row(ui, "reflects", |ui| amount(ui, &mut material.reflect));
-    row(ui, "transmits", |ui| amount(ui, &mut material.transmit));
-    row(ui, "by angle", |ui| {
-        let all =
-            [(Reflectance::Constant, "constant"), (Reflectance::Fresnel, "Fresnel"), (Reflectance::Schlick, "Schlick")];
-        choice(ui, &mut material.reflectance, &all);
-    });
-    row(ui, "refraction", |ui| {
-        ui.add(DragValue::new(&mut material.ior).speed(0.002).range(0.01..=10.0).max_decimals(4));
-    });
-    row(ui, "absorbs", |ui| {
-        for component in [&mut material.absorb.x, &mut material.absorb.y, &mut material.absorb.z] {
-            ui.add(DragValue::new(component).speed(0.005).range(0.0..=f32::MAX).max_decimals(3));
-        }
-    });
-}
-
-fn strength(ui: &mut Ui, value: &mut f32) {
-    ui.add(Slider::new(value, 0.0..=1.0).clamping(egui::SliderClamping::Never).max_decimals(3));
-}
-
-/// A strength for each component: a slider for all together, and a colour.
-fn amount(ui: &mut Ui, value: &mut Vec3f) {
-    let mut largest = value.max_component();
-    let before = largest;
-    strength(ui, &mut largest);
-    if largest != before {
-        *value = if before > 0.0 { *value * (largest / before) } else { Vec3f::splat(largest) };
-    }
-    colour(ui, value);
-}
-
 /// A linear colour; brighter than white it keeps its brightness.
 fn colour(ui: &mut Ui, color: &mut Vec3f) {
     let scale = color.max_component().max(1.0);
@@ -259,51 +210,6 @@ fn colour(ui: &mut Ui, color: &mut Vec3f) {
     if ui.color_edit_button_rgb(&mut rgb).changed() {
         *color = Vec3f::from(rgb) * scale;
     }
-}
-
-fn lights(ui: &mut Ui, session: &mut Session) {
-    let Some(mut look) = session.look().cloned() else { return };
-    let before = (look.lights.clone(), look.ambient, look.background);
-    for (number, light) in (1..).zip(&mut look.lights) {
-        grid(ui, &format!("light {number}"), |ui| light_rows(ui, number, light));
-        ui.separator();
-    }
-    grid(ui, "surroundings", |ui| {
-        row(ui, "ambient", |ui| colour(ui, &mut look.ambient));
-        row(ui, "background", |ui| match &mut look.background {
-            Background::Color(color) => colour(ui, color),
-            Background::Gradient { down, up } => {
-                colour(ui, up);
-                colour(ui, down);
-            }
-        });
-    });
-    if (&look.lights, look.ambient, look.background) != (&before.0, before.1, before.2) {
-        session.set_look(look);
-    }
-}
-
-fn light_rows(ui: &mut Ui, number: usize, light: &mut Light) {
-    let (kind, place) = match &mut light.kind {
-        LightKind::Point { position } => ("point", position),
-        LightKind::Directional { direction } => ("sun", direction),
-        LightKind::Spot { position, .. } => ("spot", position),
-    };
-    row(ui, &format!("{number}: {kind}"), |ui| {
-        for component in [&mut place.x, &mut place.y, &mut place.z] {
-            ui.add(DragValue::new(component).speed(0.02).max_decimals(3));
-        }
-    });
-    row(ui, "light", |ui| {
-        let mut brightness = light.color.max_component();
-        let before = brightness;
-        ui.add(DragValue::new(&mut brightness).speed(0.01).range(0.0..=f32::MAX).max_decimals(3));
-        if brightness != before {
-            light.color = if before > 0.0 { light.color * (brightness / before) } else { Vec3f::splat(brightness) };
-        }
-        colour(ui, &mut light.color);
-        ui.checkbox(&mut light.inverse_square, "falls off");
-    });
 }
 
 fn statistics(ui: &mut Ui, session: &Session) {
