@@ -200,6 +200,41 @@ fn a_script_needs_no_display() {
 }
 
 #[test]
+fn in_tiny_windows_cards_stay_inside_and_can_be_scrolled() {
+    const SIZE: [usize; 2] = [160, 120];
+    /// Pixels between cards and the edge of the window.
+    const EDGE: usize = 6;
+    let folder = folder("tiny");
+    fs::write(folder.join("scene.toml"), scene("#c04020", CAMERA)).unwrap();
+    let mut script = "size 160x120\nwait refined\nkey o\nscreenshot clean.png\nkey o\n".to_owned();
+    let cards = [("panel", "key tab", "key tab"), ("help", "key h", "key h"), ("pixel", "click 80 60", "key escape")];
+    for (name, open, close) in cards {
+        script += &format!(
+            "{open}\nmove 80 75\nwait 0.5\nscreenshot {name}.png\nwheel -2\nwait 0.5\nscreenshot {name}-below.png\n{close}\n"
+        );
+    }
+    fs::write(folder.join("look.txt"), script).unwrap();
+    let arguments = ["view", "scene.toml", "--script", "look.txt"];
+    let output = whitted().args(arguments).current_dir(&folder).env_remove("DISPLAY").output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let picture = |name: &str| window::pixels(&fs::read(folder.join(format!("{name}.png"))).unwrap());
+    let clean = picture("clean");
+    for (name, ..) in cards {
+        let (top, below) = (picture(name), picture(&format!("{name}-below")));
+        assert!(top != clean && below != top, "{name} cannot be scrolled");
+        if name == "pixel" {
+            // Its rays are drawn all over the picture.
+            continue;
+        }
+        for (index, (is, was)) in top.chunks(3).zip(clean.chunks(3)).enumerate() {
+            let at = [index % SIZE[0], index / SIZE[0]];
+            let is_inside = (0..2).all(|axis| (EDGE..SIZE[axis] - EDGE).contains(&at[axis]));
+            assert!(is_inside || is == was, "{name} reaches {at:?}");
+        }
+    }
+}
+
+#[test]
 fn wrong_scripts_are_told_with_their_line() {
     let folder = folder("wrong-script");
     fs::write(folder.join("scene.toml"), scene("#c04020", CAMERA)).unwrap();

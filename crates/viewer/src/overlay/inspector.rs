@@ -2,7 +2,7 @@
 
 use super::projection::View;
 use super::status::short;
-use super::theme::{ACCENT, FAINT, card};
+use super::theme::{ACCENT, FAINT, GAP, card, room, scrolled};
 use crate::session::{Inspection, Session};
 use egui::{Align2, CollapsingHeader, Color32, Context, Grid, Id, LayerId, Order, Painter, RichText, ScrollArea};
 use egui::{Stroke, Ui, Window, vec2};
@@ -12,6 +12,9 @@ use whitted::scene::{Geometry, Scene};
 
 /// Width of the inspector in units of layout.
 const WIDTH: f32 = 330.0;
+
+/// The least height of the list of rays.
+const LEAST_LIST: f32 = 60.0;
 
 /// Rays that hit nothing are drawn as long as this share of the distance that is looked at.
 const ENDLESS: f64 = 2.0;
@@ -46,21 +49,26 @@ impl Inspector {
         draw_rays(&painter, &view, sample, inspection.chosen);
         let mut chosen = None;
         let mut is_open = true;
-        let window =
-            Window::new(format!("pixel {}, {}", inspection.pixel[0], inspection.pixel[1])).id(Id::new("inspector"));
-        let window =
-            window.frame(card()).anchor(Align2::LEFT_TOP, vec2(10.0, 10.0)).resizable(false).collapsible(false);
-        window.open(&mut is_open).show(context, |ui| {
-            ui.set_width(WIDTH);
-            if let Some(scene) = session.scene() {
-                facts(ui, scene, &inspection, sample);
-                ui.checkbox(&mut self.boxes, "boxes of the tree on the ray's way");
-                ui.separator();
-                let height = (context.content_rect().height() - 280.0).max(60.0);
-                ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-                    chosen = rays(ui, scene, sample);
+        let window = Window::new("inspector").title_bar(false).resizable(false).movable(false).frame(card());
+        let room = room(context);
+        let window = window.anchor(Align2::LEFT_TOP, vec2(GAP, GAP)).min_width(0.0).default_width(room.x.min(WIDTH));
+        window.show(context, |ui| {
+            scrolled(ui, room, |ui| {
+                ui.set_width(WIDTH);
+                ui.horizontal(|ui| {
+                    is_open = !ui.small_button("×").clicked();
+                    ui.heading(format!("pixel {}, {}", inspection.pixel[0], inspection.pixel[1]));
                 });
-            }
+                if let Some(scene) = session.scene() {
+                    facts(ui, scene, &inspection, sample);
+                    ui.checkbox(&mut self.boxes, "boxes of the tree on the ray's way");
+                    ui.separator();
+                    let height = (room.y - ui.min_rect().height()).max(LEAST_LIST);
+                    ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+                        chosen = rays(ui, scene, sample);
+                    });
+                }
+            });
         });
         match is_open {
             true => session.choose_ray(chosen),

@@ -1,6 +1,6 @@
 //! How far the picture is and how fast it moves: a line in the corner, and a thin bar while it gets better.
 
-use super::theme::{ACCENT, FAINT, pill};
+use super::theme::{ACCENT, FAINT, GAP, pill, room};
 use crate::screen::Stage;
 use crate::session::Session;
 use egui::{Align2, Area, Context, Id, LayerId, Order, RichText, vec2};
@@ -9,17 +9,23 @@ use std::time::Instant;
 /// Height of the bar in units of layout.
 const BAR: f32 = 2.0;
 
+/// The line is as long as this, in units of layout.
+const ROOM: f32 = 260.0;
+
 pub(super) fn show(context: &Context, session: &mut Session, now: Instant) {
     let Some(line) = line(session, now) else { return };
     Area::new(Id::new("status"))
-        .anchor(Align2::LEFT_BOTTOM, vec2(10.0, -10.0))
+        .anchor(Align2::LEFT_BOTTOM, vec2(GAP, -GAP))
         .order(Order::Middle)
         .interactable(false)
         .show(context, |ui| {
             pill().show(ui, |ui| {
                 ui.horizontal(|ui| {
                     ui.label(RichText::new(line.0).monospace());
-                    ui.label(RichText::new(line.1).color(FAINT));
+                    // The panel says it, too.
+                    if room(context).x >= ROOM {
+                        ui.label(RichText::new(line.1).color(FAINT));
+                    }
                 });
             });
         });

@@ -1,6 +1,7 @@
 //! Colours and shapes: dark and translucent, so that the picture stays the bright thing.
 
-use egui::{Color32, CornerRadius, FontFamily, FontId, Frame, Margin, Shadow, Stroke, TextStyle, Visuals};
+use egui::{Color32, CornerRadius, FontFamily, FontId, Frame, Margin, ScrollArea, Shadow, Stroke, TextStyle, Ui, Vec2};
+use egui::{Visuals, vec2};
 
 /// What draws the eye: progress, what is chosen.
 pub(super) const ACCENT: Color32 = Color32::from_rgb(255, 178, 74);
@@ -53,4 +54,23 @@ pub(super) fn card() -> Frame {
 /// As [`card`], smaller.
 pub(super) fn pill() -> Frame {
     card().stroke(Stroke::NONE).inner_margin(Margin::symmetric(9, 5))
+}
+
+/// Between a card and the edge of the window, in units of layout.
+pub(super) const GAP: f32 = 10.0;
+
+/// The least room: less is not worth a scroll bar.
+const LEAST: f32 = 24.0;
+
+/// The room for what is on a card.
+pub(super) fn room(context: &egui::Context) -> Vec2 {
+    let frame = card();
+    let edges = vec2(2.0 * GAP, 2.0 * GAP) + frame.inner_margin.sum() + vec2(2.0, 2.0) * frame.stroke.width;
+    (context.content_rect().size() - edges).max(vec2(LEAST, LEAST))
+}
+
+/// Show what may be larger than its room: then it can be scrolled both ways.
+pub(super) fn scrolled<R>(ui: &mut Ui, room: Vec2, show: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.set_max_size(room);
+    ScrollArea::both().min_scrolled_width(LEAST).min_scrolled_height(LEAST).show(ui, show).inner
 }
