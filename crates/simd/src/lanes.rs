@@ -62,7 +62,7 @@ pub trait Simd: Copy + Send + Sync + Debug + 'static {
 
     /// The columns of eight rows of four: eight records become lanes. Bits are kept.
     #[inline(always)]
-    fn columns(self, rows: [Self::F32x4; 8]) -> [Self::F32x8; 4] {
+    fn columns_x8(self, rows: [Self::F32x4; 8]) -> [Self::F32x8; 4] {
         let mut columns = [[0.0; 8]; 4];
         for i in 0..8 {
             let mut row = [0.0; 4];
@@ -74,6 +74,24 @@ pub trait Simd: Copy + Send + Sync + Debug + 'static {
         let mut out = [Self::F32x8::splat(self, 0.0); 4];
         for i in 0..4 {
             out[i] = Self::F32x8::load(self, &columns[i]);
+        }
+        out
+    }
+
+    /// The columns of sixteen rows of four, see [`columns_x8`](Self::columns_x8).
+    #[inline(always)]
+    fn columns_x16(self, rows: [Self::F32x4; 16]) -> [Self::F32x16; 4] {
+        let mut columns = [[0.0; 16]; 4];
+        for i in 0..16 {
+            let mut row = [0.0; 4];
+            rows[i].store(&mut row);
+            for (column, element) in columns.iter_mut().zip(row) {
+                column[i] = element;
+            }
+        }
+        let mut out = [Self::F32x16::splat(self, 0.0); 4];
+        for i in 0..4 {
+            out[i] = Self::F32x16::load(self, &columns[i]);
         }
         out
     }

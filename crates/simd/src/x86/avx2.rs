@@ -35,6 +35,13 @@ impl Simd for Avx2 {
     }
     transposes!();
     #[inline(always)]
+    fn columns_x16(self, rows: [F32x4<Self>; 16]) -> [Pair<F32x8>; 4] {
+        let (low, high) = rows.split_at(8);
+        let [a, b, c, d] = self.columns_x8(*low.first_chunk().expect("half of the rows"));
+        let [e, f, g, h] = self.columns_x8(*high.first_chunk().expect("half of the rows"));
+        [Pair(a, e), Pair(b, f), Pair(c, g), Pair(d, h)]
+    }
+    #[inline(always)]
     fn append_matching(self, masks: &[u16], ids: &[u16], bit: u16, out: &mut [u16]) -> usize {
         left_pack::append_matching(self, masks, ids, bit, out)
     }

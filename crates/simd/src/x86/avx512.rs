@@ -34,6 +34,14 @@ impl Simd for Avx512 {
     }
     transposes!();
     #[inline(always)]
+    fn columns_x16(self, rows: [F32x4<Self>; 16]) -> [F32x16; 4] {
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = rows;
+        let rows = [[a.0, e.0, i.0, m.0], [b.0, f.0, j.0, n.0], [c.0, g.0, k.0, o.0], [d.0, h.0, l.0, p.0]];
+        // SAFETY: the token exists, so the CPU has its features.
+        let [x, y, z, w] = unsafe { super::transpose::transpose_16x4(rows) };
+        [F32x16::wrap(x, self), F32x16::wrap(y, self), F32x16::wrap(z, self), F32x16::wrap(w, self)]
+    }
+    #[inline(always)]
     fn append_matching(self, masks: &[u16], ids: &[u16], bit: u16, out: &mut [u16]) -> usize {
         assert!(masks.len() == ids.len() && out.len() >= ids.len() + STEP);
         let (mask_steps, mask_rest) = masks.as_chunks::<STEP>();

@@ -207,7 +207,7 @@ macro_rules! transposes {
             ]
         }
         #[inline(always)]
-        fn columns(self, rows: [F32x4<Self>; 8]) -> [F32x8; 4] {
+        fn columns_x8(self, rows: [F32x4<Self>; 8]) -> [F32x8; 4] {
             let [a, b, c, d, e, f, g, h] = rows;
             let rows = [a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0];
             // SAFETY: the token exists, so the CPU has its features.

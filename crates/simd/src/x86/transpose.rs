@@ -64,3 +64,37 @@ unsafe fn transpose_4x4_halves([a, b, c, d]: [__m256; 4]) -> [__m256; 4] {
         ]
     }
 }
+
+/// The columns of sixteen rows of four, given as those that go to the same place of each quarter: `rows[i][q]` is row
+/// `4q + i`.
+///
+/// # Safety
+/// The CPU must have AVX-512F.
+#[inline(always)]
+pub(super) unsafe fn transpose_16x4([a, b, c, d]: [[__m128; 4]; 4]) -> [__m512; 4] {
+    // SAFETY: by this function's contract.
+    unsafe {
+        let (a, b, c, d) = (quarters(a), quarters(b), quarters(c), quarters(d));
+        let (ab_low, ab_high) = (_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b));
+        let (cd_low, cd_high) = (_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d));
+        [
+            _mm512_shuffle_ps::<0b01_00_01_00>(ab_low, cd_low),
+            _mm512_shuffle_ps::<0b11_10_11_10>(ab_low, cd_low),
+            _mm512_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+            _mm512_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
+        ]
+    }
+}
+
+/// Four quarters as one register.
+///
+/// # Safety
+/// The CPU must have AVX-512F.
+#[inline(always)]
+unsafe fn quarters([a, b, c, d]: [__m128; 4]) -> __m512 {
+    // SAFETY: by this function's contract.
+    unsafe {
+        let ab = _mm512_insertf32x4::<1>(_mm512_castps128_ps512(a), b);
+        _mm512_insertf32x4::<3>(_mm512_insertf32x4::<2>(ab, c), d)
+    }
+}

@@ -117,19 +117,30 @@ impl Kernel for Transpose {
     }
 }
 
-struct Columns([[f32; 4]; 8]);
+struct ColumnsX8([[f32; 4]; 8]);
 
-impl Kernel for Columns {
+impl Kernel for ColumnsX8 {
     type Output = [[f32; 8]; 4];
     #[inline(always)]
     fn run<S: Simd>(self, token: S) -> Self::Output {
-        let columns = token.columns(self.0.map(|row| S::F32x4::load(token, &row)));
+        let columns = token.columns_x8(self.0.map(|row| S::F32x4::load(token, &row)));
         columns.map(stored)
     }
 }
 
-fn stored<F: F32Lanes<Array = [f32; 8]>>(lanes: F) -> [f32; 8] {
-    let mut out = [0.0; 8];
+struct ColumnsX16([[f32; 4]; 16]);
+
+impl Kernel for ColumnsX16 {
+    type Output = [[f32; 16]; 4];
+    #[inline(always)]
+    fn run<S: Simd>(self, token: S) -> Self::Output {
+        let columns = token.columns_x16(self.0.map(|row| S::F32x4::load(token, &row)));
+        columns.map(stored)
+    }
+}
+
+fn stored<const N: usize, F: F32Lanes<Array = [f32; N]>>(lanes: F) -> [f32; N] {
+    let mut out = [0.0; N];
     lanes.store(&mut out);
     out
 }
@@ -138,11 +149,14 @@ fn stored<F: F32Lanes<Array = [f32; 8]>>(lanes: F) -> [f32; 8] {
 fn rows_become_columns() {
     let square: [[f32; 8]; 8] = std::array::from_fn(|i| std::array::from_fn(|j| (10 * i + j) as f32));
     let tall: [[f32; 4]; 8] = std::array::from_fn(|i| std::array::from_fn(|j| (10 * i + j) as f32));
+    let taller: [[f32; 4]; 16] = std::array::from_fn(|i| std::array::from_fn(|j| (10 * i + j) as f32));
     for level in levels() {
         let columns = dispatch(level, Transpose(square));
         assert!((0..8).all(|i| (0..8).all(|j| columns[j][i] == square[i][j])), "{level}: {columns:?}");
-        let columns = dispatch(level, Columns(tall));
+        let columns = dispatch(level, ColumnsX8(tall));
         assert!((0..8).all(|i| (0..4).all(|j| columns[j][i] == tall[i][j])), "{level}: {columns:?}");
+        let columns = dispatch(level, ColumnsX16(taller));
+        assert!((0..16).all(|i| (0..4).all(|j| columns[j][i] == taller[i][j])), "{level}: {columns:?}");
     }
 }
 

@@ -192,7 +192,7 @@ fn padded<S: Simd>(token: S, point: Vec3f, last: f32) -> S::F32x4 {
 /// Eight records of four as a vector and the rest.
 #[inline(always)]
 fn widened<S: Simd>(token: S, records: [S::F32x4; STEP]) -> (Vec3<S::F64x8>, S::F64x8) {
-    let [x, y, z, last] = token.columns(records);
+    let [x, y, z, last] = token.columns_x8(records);
     (Vec3::new(S::F64x8::widen(x), S::F64x8::widen(y), S::F64x8::widen(z)), S::F64x8::widen(last))
 }
 

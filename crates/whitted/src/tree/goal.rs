@@ -26,8 +26,32 @@ pub(crate) trait Goal {
         primitive: u32,
         limit: F,
     ) -> F {
-        offer_each(self, token, first, hit, t, primitive, limit)
+        let mut rays = [first as u16; 16];
+        for lane in 0..16 {
+            rays[lane] += lane as u16;
+        }
+        offer_each(self, token, &rays, hit, t, primitive, limit)
     }
+
+    /// As [`offer_row`](Self::offer_row), for any sixteen rays, which pass by one primitive after the other: what they
+    /// find may stay in `found`, at first [`NONE`], until it is settled.
+    #[inline(always)]
+    fn offer_lanes<F: F32Lanes<Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>>(
+        &mut self,
+        token: F::Token,
+        rays: &[u16; 16],
+        hit: F::Mask,
+        t: F,
+        primitive: u32,
+        limit: F,
+        _: &mut F::U32,
+    ) -> F {
+        if hit.any() { offer_each(self, token, rays, hit, t, primitive, limit) } else { limit }
+    }
+
+    /// Take what a ray has found, which is not [`NONE`].
+    #[inline(always)]
+    fn settle(&mut self, _ray: usize, _found: u32) {}
 }
 
 /// [`Goal::offer`] for each lane that hit.
@@ -35,7 +59,7 @@ pub(crate) trait Goal {
 fn offer_each<F: F32Lanes<Array = [f32; 16]>, G: Goal + ?Sized>(
     goal: &mut G,
     token: F::Token,
-    first: usize,
+    rays: &[u16; 16],
     hit: F::Mask,
     t: F,
     primitive: u32,
@@ -48,11 +72,27 @@ fn offer_each<F: F32Lanes<Array = [f32; 16]>, G: Goal + ?Sized>(
     while bits != 0 {
         let lane = bits.trailing_zeros() as usize % 16;
         bits &= bits - 1;
-        if let Some(shorter) = goal.offer(first + lane, ts[lane], primitive, limits[lane]) {
+        if let Some(shorter) = goal.offer(usize::from(rays[lane]), ts[lane], primitive, limits[lane]) {
             limits[lane] = shorter;
         }
     }
     F::load(token, &limits)
+}
+
+/// [`Goal::settle`] for each lane that found something.
+#[inline(always)]
+pub(super) fn settle_all<F: F32Lanes<U32: U32Lanes<Array = [u32; 16]>>, G: Goal + ?Sized>(
+    goal: &mut G,
+    rays: &[u16; 16],
+    found: F::U32,
+) {
+    let mut stored = [NONE; 16];
+    found.store(&mut stored);
+    for (&ray, found) in rays.iter().zip(stored) {
+        if found != NONE {
+            goal.settle(usize::from(ray), found);
+        }
+    }
 }
 
 /// The hit with the smallest (t, primitive).
@@ -87,6 +127,32 @@ impl Goal for Closest<'_> {
         let better = hit & (t.lt(limit) | (t.eq(limit) & primitive.lt(best)));
         F::U32::select(better, primitive, best).store_slice(row);
         F::select(better, t, limit)
+    }
+
+    #[inline(always)]
+    fn offer_lanes<F: F32Lanes<Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>>(
+        &mut self,
+        token: F::Token,
+        rays: &[u16; 16],
+        hit: F::Mask,
+        t: F,
+        primitive: u32,
+        limit: F,
+        found: &mut F::U32,
+    ) -> F {
+        if (hit & t.eq(limit)).any() {
+            settle_all::<F, _>(self, rays, *found);
+            *found = F::U32::splat(token, NONE);
+            return offer_each(self, token, rays, hit, t, primitive, limit);
+        }
+        let closer = hit & t.lt(limit);
+        *found = F::U32::select(closer, F::U32::splat(token, primitive), *found);
+        F::select(closer, t, limit)
+    }
+
+    #[inline(always)]
+    fn settle(&mut self, ray: usize, found: u32) {
+        self.primitive[ray] = found;
     }
 }
 
@@ -148,3 +214,60 @@ impl Goal for Any<'_> {
 }
 
 const _: () = assert!(NONE == u32::MAX, "every primitive must come before NONE in the order of ties");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::SplitMix64;
+    use simd::{Kernel, Level, Simd};
+
+    /// Sixteen rays pass by a few primitives at distances of which many are equal.
+    struct Pass<'a>(&'a [(u16, [f32; 16], u32)]);
+
+    const RAYS: [u16; 16] = [3, 1, 4, 15, 9, 2, 6, 5, 0, 8, 7, 10, 13, 12, 11, 14];
+
+    impl Kernel for Pass<'_> {
+        type Output = ([u32; 16], [f32; 16]);
+
+        #[inline(always)]
+        fn run<S: Simd>(self, token: S) -> Self::Output {
+            let mut primitive = [NONE; 16];
+            let mut goal = Closest { primitive: &mut primitive };
+            let mut limit = S::F32x16::splat(token, 2.0);
+            let mut found = <S::F32x16 as F32Lanes>::U32::splat(token, NONE);
+            for (hit, t, id) in self.0 {
+                let hit = <S::F32x16 as F32Lanes>::Mask::from_bits(token, u32::from(*hit));
+                let t = S::F32x16::load(token, t);
+                limit = goal.offer_lanes(token, &RAYS, hit & t.le(limit), t, *id, limit, &mut found);
+            }
+            settle_all::<S::F32x16, _>(&mut goal, &RAYS, found);
+            let mut limits = [0.0; 16];
+            limit.store(&mut limits);
+            (primitive, limits)
+        }
+    }
+
+    #[test]
+    fn rays_abreast_find_what_each_finds_alone() {
+        let mut random = SplitMix64::new(5);
+        for _ in 0..200 {
+            let offers: [(u16, [f32; 16], u32); 6] = std::array::from_fn(|_| {
+                let t = std::array::from_fn(|_| random.below(3) as f32);
+                (random.below(1 << 16) as u16, t, random.below(100) as u32)
+            });
+            let (mut primitive, mut limits) = ([NONE; 16], [2.0; 16]);
+            let mut goal = Closest { primitive: &mut primitive };
+            for (hit, t, id) in offers {
+                for lane in 0..16 {
+                    let (ray, limit) = (usize::from(RAYS[lane]), limits[lane]);
+                    if hit >> lane & 1 != 0 && t[lane] <= limit {
+                        limits[lane] = goal.offer(ray, t[lane], id, limit).unwrap_or(limit);
+                    }
+                }
+            }
+            for level in Level::available() {
+                assert_eq!(simd::dispatch(level, Pass(&offers)), (primitive, limits), "{level:?}");
+            }
+        }
+    }
+}

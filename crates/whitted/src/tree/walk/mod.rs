@@ -2,6 +2,7 @@
 //!
 //! All are generic over the instruction set and over the [`Goal`], and all offer the same candidates.
 
+mod abreast;
 mod frustum;
 mod prepared;
 mod single;
@@ -77,6 +78,27 @@ impl<G: Goal> Walk<'_, G> {
             if !walked.contains(packet) {
                 self.rays.record(token, &from, packet);
             }
+        }
+    }
+
+    /// Test up to sixteen rays of a list, given by their numbers, against the blocks of a leaf.
+    #[inline(always)]
+    fn leaf_of_list<S: Simd>(
+        &mut self,
+        token: S,
+        ids: &[u16],
+        kind: LeafKind,
+        first: usize,
+        count: usize,
+        counts: &mut Counts,
+    ) {
+        if kind == LeafKind::Spheres && ids.len() >= abreast::MIN_RAYS {
+            counts.primitive_tests += (ids.len() * count * super::leaf::BLOCK) as u64;
+            let blocks = &self.tree.leaves.spheres[first..first + count];
+            return abreast::spheres(token, self, ids, blocks);
+        }
+        for &id in ids {
+            self.leaf(token, usize::from(id), kind, first, count, counts);
         }
     }
 

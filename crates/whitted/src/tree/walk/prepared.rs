@@ -3,7 +3,7 @@
 mod one;
 
 use super::frustum::PACKET;
-use crate::geometry::sphere::SphereRay;
+use crate::geometry::sphere::{SphereRay, SphereRays};
 use crate::geometry::{Primitives, ShearedRay};
 use crate::math::Vec3;
 use crate::ray::{NONE, Ray, Rays, lanes};
@@ -206,6 +206,24 @@ impl PreparedRays {
     pub(super) fn sphere(&self, index: usize) -> SphereRay {
         let [ox, oy, oz, dx, dy, dz, inverse, _] = self.spheres[index].0;
         SphereRay::from_parts([ox, oy, oz], [dx, dy, dz], inverse)
+    }
+
+    /// Sixteen rays in the form for spheres, and the ends of their ranges so far.
+    #[inline(always)]
+    pub(super) fn spheres_x16<S: Simd>(&self, token: S, rays: &[u16; STEP]) -> (SphereRays<S::F32x16>, [S::F32x16; 2]) {
+        let zero = S::F32x4::splat(token, 0.0);
+        let (mut first, mut second, mut range) = ([zero; STEP], [zero; STEP], [zero; STEP]);
+        for lane in 0..STEP {
+            let ray = usize::from(rays[lane]);
+            let (low, high) = self.spheres[ray].0.split_at(4);
+            first[lane] = S::F32x4::load_slice(token, low);
+            second[lane] = S::F32x4::load_slice(token, high);
+            range[lane] = S::F32x4::load_slice(token, &self.nodes[ray].0.0[4..]);
+        }
+        let [ox, oy, oz, dx] = token.columns_x16(first);
+        let [dy, dz, inverse_length_squared, _] = token.columns_x16(second);
+        let [_, _, t_min, limit] = token.columns_x16(range);
+        (SphereRays { origin: [ox, oy, oz], direction: [dx, dy, dz], inverse_length_squared }, [t_min, limit])
     }
 
     /// A ray as the caller gave it; only where there are shapes or planes.

@@ -8,6 +8,7 @@
 //!
 //! Rays are first sorted by octant, so that all rays of a list enter a box through the same three planes.
 
+use super::abreast;
 use super::single::{self, Stack};
 use super::slabs::Slabs;
 use super::{PreparedRays, Walk};
@@ -108,8 +109,8 @@ fn work_off<S: Simd, G: Goal>(
                 top = distribute(token, node, octant, any, lists, top);
             }
             ChildKind::Leaf { kind, first, count } => {
-                for position in top..top + len {
-                    walk.leaf(token, lists.ids[position] as usize, kind, first, count, counts);
+                for ids in lists.ids[top..top + len].chunks(abreast::LANES) {
+                    walk.leaf_of_list(token, ids, kind, first, count, counts);
                 }
             }
         }
