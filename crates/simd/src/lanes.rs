@@ -184,6 +184,44 @@ pub trait F32Lanes:
     fn store_slice(self, to: &mut [f32]);
     /// `table[index]` per lane. Panics if an index of any lane is out of range.
     fn gather(table: &[f32], index: Self::U32) -> Self;
+    /// Four neighbours for each lane: `table[index][k]` in vector `k`. Panics if an index of any lane is out of range.
+    #[inline(always)]
+    fn gather_x4(table: &[[f32; 4]], index: Self::U32) -> [Self; 4] {
+        let mut numbers = <Self::U32 as U32Lanes>::Array::default();
+        index.store(&mut numbers);
+        let mut columns = [Self::Array::default(); 4];
+        for lane in 0..Self::WIDTH {
+            let row = table[numbers.as_ref()[lane] as usize];
+            for k in 0..4 {
+                columns[k].as_mut()[lane] = row[k];
+            }
+        }
+        let token = Self::from_bits(index).token();
+        let [a, b, c, d] = columns;
+        [Self::load(token, &a), Self::load(token, &b), Self::load(token, &c), Self::load(token, &d)]
+    }
+
+    /// Add to rows of a table, lane by lane where `mask` is set: `table[index][k] += addends[k]`, rounded toward zero.
+    /// Sums that are too large stay at `i64::MAX`. Panics if an index of such a lane is out of range.
+    ///
+    /// Addends must be in 0 to 2⁶², and what is in the table not negative, else sums are unspecified.
+    #[inline(always)]
+    fn accumulate(addends: [Self; 4], mask: Self::Mask, index: Self::U32, table: &mut [[i64; 4]]) {
+        let (mut numbers, mut rows) = (<Self::U32 as U32Lanes>::Array::default(), [Self::Array::default(); 4]);
+        index.store(&mut numbers);
+        for k in 0..4 {
+            addends[k].store(&mut rows[k]);
+        }
+        let mut bits = mask.bits();
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize % Self::WIDTH;
+            bits &= bits - 1;
+            let sums = &mut table[numbers.as_ref()[lane] as usize];
+            for k in 0..4 {
+                sums[k] = sums[k].saturating_add(rows[k].as_ref()[lane] as i64);
+            }
+        }
+    }
 
     /// `if self < other { self } else { other }` per lane: a NaN on either side gives `other`.
     fn min(self, other: Self) -> Self;

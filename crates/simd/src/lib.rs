@@ -24,6 +24,7 @@ mod lanes;
 mod level;
 pub mod math;
 mod memory;
+mod octet;
 #[cfg(target_arch = "x86_64")]
 mod pair;
 mod scalar;
@@ -37,6 +38,7 @@ pub use double::{ArrayF64, F64Lanes};
 pub use lanes::{F32Lanes, MaskLanes, Simd, U32Lanes};
 pub use level::Level;
 pub use memory::{advise_huge_pages, prefetch};
+pub use octet::Octet;
 pub use scalar::{Scalar, ScalarF32, ScalarMask, ScalarU32};
 pub use vec4::Vec4;
 #[cfg(target_arch = "x86_64")]

@@ -133,6 +133,12 @@ where
         Self(V::gather(table, index.0), V::gather(table, index.1))
     }
     #[inline(always)]
+    fn gather_x4(table: &[[f32; 4]], index: Self::U32) -> [Self; 4] {
+        let [a, b, c, d] = V::gather_x4(table, index.0);
+        let [e, f, g, h] = V::gather_x4(table, index.1);
+        [Self(a, e), Self(b, f), Self(c, g), Self(d, h)]
+    }
+    #[inline(always)]
     fn from_bits(bits: Self::U32) -> Self {
         Self(V::from_bits(bits.0), V::from_bits(bits.1))
     }

@@ -2,6 +2,7 @@
 
 use super::avx512::Avx512;
 use super::avx512_x8::F32x8;
+use super::x4::F32x4;
 use crate::{F32Lanes, MaskLanes, U32Lanes};
 use std::arch::x86_64::*;
 
@@ -61,6 +62,29 @@ impl F32Lanes for F32x16 {
         splat(value) = _mm512_set1_ps(value);
         load(from) = _mm512_loadu_ps(from);
         store(to, a) = _mm512_storeu_ps(to, a);
+    }
+    gather_x4!(columns_x16);
+    #[inline(always)]
+    fn accumulate(addends: [Self; 4], mask: Mask16, index: U32x16, table: &mut [[i64; 4]]) {
+        let [a, b, c, d] = addends;
+        // SAFETY: the lanes exist, so the CPU has the token's features.
+        let rows = unsafe { super::transpose::integers_16x4([a.0, b.0, c.0, d.0]) };
+        let mut numbers = [0; 16];
+        index.store(&mut numbers);
+        let mut bits = mask.bits();
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize % 16;
+            bits &= bits - 1;
+            let sums = &mut table[numbers[lane] as usize];
+            // SAFETY: as above; both are four integers. The sum of two numbers below 2⁶³ does not wrap round as one
+            // without sign.
+            unsafe {
+                let old = _mm256_loadu_si256(sums.as_ptr().cast());
+                let new = _mm256_add_epi64(old, _mm256_loadu_si256(rows[lane % 4][lane / 4].as_ptr().cast()));
+                let new = _mm256_min_epu64(new, _mm256_set1_epi64x(i64::MAX));
+                _mm256_storeu_si256(sums.as_mut_ptr().cast(), new);
+            }
+        }
     }
     hardware_gather!(f32, U32x16; |from, at| _mm512_i32gather_ps::<4>(at, from));
     methods! {

@@ -185,6 +185,27 @@ macro_rules! hardware_gather {
     };
 }
 
+/// A gather of four neighbours: one read for each lane, turned in registers by `columns` of the token.
+macro_rules! gather_x4 {
+    ($columns:ident) => {
+        #[inline(always)]
+        fn gather_x4(table: &[[f32; 4]], index: Self::U32) -> [Self; 4] {
+            let token = index.1;
+            let limit = table.len().min(u32::MAX as usize) as u32;
+            assert!(index.lt(Self::U32::splat(token, limit)).all(), "an index is beyond the table");
+            let mut numbers = [0; Self::WIDTH];
+            index.store(&mut numbers);
+            let mut rows = [F32x4::splat(token, 0.0); Self::WIDTH];
+            for lane in 0..Self::WIDTH {
+                // SAFETY: every lane is below the length of the table (asserted above). Checked one by one, the loop would
+                // not be unrolled, and the rows would go through memory.
+                rows[lane] = F32x4::load(token, unsafe { table.get_unchecked(numbers[lane] as usize) });
+            }
+            crate::Simd::$columns(token, rows)
+        }
+    };
+}
+
 /// The transpositions of [`Simd`](crate::Simd), for tokens whose `F32x8` is one register.
 macro_rules! transposes {
     () => {

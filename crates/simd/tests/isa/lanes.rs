@@ -173,6 +173,7 @@ impl ForLanes for Across {
             self.check_memory(token, lanes, expected);
             self.check_reductions(lanes, expected);
             self.check_gather::<F>(token, &values, &mut random);
+            self.check_accumulate::<F>(token, &mut random);
             self.check_mask::<F>(token, random.next_u32());
         }
     }
@@ -218,8 +219,42 @@ impl Across {
         let expected: Vec<u32> = at.iter().map(|&i| table[i as usize].to_bits()).collect();
         let index = F::U32::load_slice(token, &at);
         assert_eq!(bits_of(F::gather(table, index).to_bits()), expected, "{} x{}", self.0, F::WIDTH);
+        let (fours, _) = table.as_chunks::<4>();
+        let places: Vec<u32> = at.iter().map(|i| i % fours.len() as u32).collect();
+        let columns = F::gather_x4(fours, F::U32::load_slice(token, &places));
+        for (k, column) in columns.into_iter().enumerate() {
+            let expected: Vec<u32> = places.iter().map(|&i| fours[i as usize][k].to_bits()).collect();
+            assert_eq!(bits_of(column.to_bits()), expected, "{} x{}", self.0, F::WIDTH);
+        }
         let table: Vec<u32> = bits(table);
         assert_eq!(bits_of(F::U32::gather(&table, index)), expected, "{} x{}", self.0, F::WIDTH);
+    }
+
+    /// Rows are met more than once, and sums reach the end of their range.
+    fn check_accumulate<F: F32Lanes>(&self, token: F::Token, random: &mut SplitMix64) {
+        const LARGEST: f32 = (1u64 << 62) as f32;
+        let mut table: [[i64; 4]; 5] = std::array::from_fn(|_| {
+            std::array::from_fn(|_| {
+                if random.next_u32().is_multiple_of(3) { i64::MAX - 5 } else { random.next_u32().into() }
+            })
+        });
+        let at: Vec<u32> = (0..F::WIDTH).map(|_| random.next_u32() % 5).collect();
+        let number = |random: &mut SplitMix64| [0.0, 0.99, 3.7, 1e9, 1e18, LARGEST][random.next_u32() as usize % 6];
+        let rows: [Vec<f32>; 4] = std::array::from_fn(|_| (0..F::WIDTH).map(|_| number(random)).collect());
+        let bits = random.next_u32();
+        let mut expected = table;
+        for lane in (0..F::WIDTH).filter(|lane| bits >> lane & 1 != 0) {
+            for (k, sum) in expected[at[lane] as usize].iter_mut().enumerate() {
+                *sum = sum.saturating_add(rows[k][lane] as i64);
+            }
+        }
+        let mut addends = [F::splat(token, 0.0); 4];
+        for (addend, row) in addends.iter_mut().zip(&rows) {
+            *addend = F::load_slice(token, row);
+        }
+        let mask = F::Mask::from_bits(token, bits);
+        F::accumulate(addends, mask, F::U32::load_slice(token, &at), &mut table);
+        assert_eq!(table, expected, "{} x{}", self.0, F::WIDTH);
     }
 
     fn check_mask<F: F32Lanes>(&self, token: F::Token, bits: u32) {
@@ -251,7 +286,9 @@ fn gather_panics_out_of_range() {
             let index = F::U32::load_slice(token, &at);
             let float = catch_unwind(AssertUnwindSafe(|| bits_of(F::gather(&table, index).to_bits())));
             let int = catch_unwind(AssertUnwindSafe(|| bits_of(F::U32::gather(&[5; 7], index))));
+            let four = catch_unwind(AssertUnwindSafe(|| bits_of(F::gather_x4(&[[0.5; 4]; 7], index)[3].to_bits())));
             assert_eq!((float.is_err(), int.is_err()), (self.1 > 6, self.1 > 6), "x{} index {}", F::WIDTH, self.1);
+            assert_eq!(four.is_err(), self.1 > 6, "x{} index {}", F::WIDTH, self.1);
         }
     }
     let silent = std::panic::take_hook();

@@ -5,6 +5,7 @@
 //! hits that are neighbours in the batch together, so that rays need not be gathered; [`Triangle::refine`] and
 //! [`Sphere::refine`] are the scalar twins.
 
+use super::surfaces::padded;
 use super::triangle::Refined;
 use super::{Primitives, Sphere, Triangle};
 use crate::math::{Vec3, Vec3f};
@@ -182,11 +183,6 @@ fn refine_spheres<S: Simd>(
     let before = S::F64x8::widen(lanes(token, hits.t, step.clone())).lt(middle);
     let t = in_range(token, S::F32x8::select(before, near, far), rays, &step);
     blend(token, &mut hits.t[step], mask, t);
-}
-
-#[inline(always)]
-fn padded<S: Simd>(token: S, point: Vec3f, last: f32) -> S::F32x4 {
-    S::F32x4::load(token, &[point.x, point.y, point.z, last])
 }
 
 /// Eight records of four as a vector and the rest.

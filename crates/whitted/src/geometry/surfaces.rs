@@ -108,15 +108,13 @@ impl Primitives {
     #[inline(always)]
     fn sphere_rows<S: Simd>(&self, token: S, hits: &HitRows, set: u32, out: &mut SurfaceRows) {
         let (first, spheres) = (self.first_sphere(), self.spheres());
-        let (mut center, mut radius) = ([[0.0; BLOCK]; 3], [0.0; BLOCK]);
-        let mut lanes = set;
-        while lanes != 0 {
-            let lane = lanes.trailing_zeros() as usize % BLOCK;
-            lanes &= lanes - 1;
-            let sphere = &spheres[(hits.primitive[lane] - first) as usize];
-            put(&mut center, lane, sphere.center);
-            radius[lane] = sphere.radius;
+        let mut records = [S::F32x4::splat(token, 0.0); BLOCK];
+        for lane in 0..BLOCK {
+            // Lanes that hit something else may get any sphere.
+            let sphere = spheres.get((hits.primitive[lane].wrapping_sub(first)) as usize).unwrap_or(&spheres[0]);
+            records[lane] = padded(token, sphere.center, sphere.radius);
         }
+        let (center, radius) = columns::<S>(token, records);
         let (mut position, mut normal) = ([[0.0; BLOCK]; 3], [[0.0; BLOCK]; 3]);
         for at in [0, HALF] {
             let c = vector::<S>(token, [&center[0], &center[1], &center[2]], at);
@@ -138,16 +136,15 @@ impl Primitives {
     /// The vector twin of [`Triangle::surface`](super::Triangle::surface) and of the interpolation of normals.
     #[inline(always)]
     fn triangle_rows<S: Simd>(&self, token: S, hits: &HitRows, set: u32, out: &mut SurfaceRows) {
-        let mut corners = [[[0.0; BLOCK]; 3]; 3];
-        let mut lanes = set;
-        while lanes != 0 {
-            let lane = lanes.trailing_zeros() as usize % BLOCK;
-            lanes &= lanes - 1;
-            let triangle = self.triangle(hits.primitive[lane] as usize);
-            for (rows, vertex) in corners.iter_mut().zip(triangle.vertices) {
-                put(rows, lane, vertex);
-            }
+        let mut records = [[S::F32x4::splat(token, 0.0); BLOCK]; 3];
+        for lane in 0..BLOCK {
+            let [a, b, c] = self.triangle(self.triangle_or_first(hits.primitive[lane])).vertices;
+            records[0][lane] = padded(token, a, 0.0);
+            records[1][lane] = padded(token, b, 0.0);
+            records[2][lane] = padded(token, c, 0.0);
         }
+        let [a, b, c] = records;
+        let corners = [columns::<S>(token, a).0, columns::<S>(token, b).0, columns::<S>(token, c).0];
         let (mut position, mut normal) = ([[0.0; BLOCK]; 3], [[0.0; BLOCK]; 3]);
         for at in [0, HALF] {
             let [a, b, c] = &corners;
@@ -160,26 +157,32 @@ impl Primitives {
             store::<S>(across / across.length_squared().sqrt(), &mut normal, at);
         }
         upright_where_flat(token, &mut normal);
-        let shading = self.shading_normals(token, hits, set, &normal);
+        let shading = self.shading_normals(token, hits, &normal);
         let error = error_bound::<S::F32x16>(token, largest(token, &position), extent(token, &corners));
         out.set(token, set, &position, &normal, &shading, error);
     }
 
+    /// The triangle with this number; the first if it is none, for lanes that hit something else.
+    #[inline(always)]
+    fn triangle_or_first(&self, primitive: u32) -> usize {
+        if primitive < self.first_sphere() { primitive as usize } else { 0 }
+    }
+
     /// Interpolated normals, turned to the side of `n_g`; `n_g` itself where there is none.
     #[inline(always)]
-    fn shading_normals<S: Simd>(&self, token: S, hits: &HitRows, set: u32, n_g: &[Row; 3]) -> [Row; 3] {
+    fn shading_normals<S: Simd>(&self, token: S, hits: &HitRows, n_g: &[Row; 3]) -> [Row; 3] {
         if !self.has_normals() {
             return *n_g;
         }
-        let mut corners = [[[0.0; BLOCK]; 3]; 3];
-        let mut lanes = set;
-        while lanes != 0 {
-            let lane = lanes.trailing_zeros() as usize % BLOCK;
-            lanes &= lanes - 1;
-            for (rows, normal) in corners.iter_mut().zip(self.corner_normals(hits.primitive[lane] as usize)) {
-                put(rows, lane, normal);
-            }
+        let mut records = [[S::F32x4::splat(token, 0.0); BLOCK]; 3];
+        for lane in 0..BLOCK {
+            let [a, b, c] = self.corner_normals(self.triangle_or_first(hits.primitive[lane]));
+            records[0][lane] = padded(token, a, 0.0);
+            records[1][lane] = padded(token, b, 0.0);
+            records[2][lane] = padded(token, c, 0.0);
         }
+        let [a, b, c] = records;
+        let corners = [columns::<S>(token, a).0, columns::<S>(token, b).0, columns::<S>(token, c).0];
         let row = |row: &Row| S::F32x16::load(token, row);
         let rows = |rows: &[Row; 3]| Vec3::new(row(&rows[0]), row(&rows[1]), row(&rows[2]));
         let (a, b, c, n_g) = (rows(&corners[0]), rows(&corners[1]), rows(&corners[2]), rows(n_g));
@@ -245,6 +248,21 @@ fn replace<L: F32Lanes<Array = Row>>(token: L::Token, mask: L::Mask, row: &mut R
 #[inline(always)]
 fn put(rows: &mut [Row; 3], lane: usize, value: Vec3f) {
     (rows[0][lane], rows[1][lane], rows[2][lane]) = (value.x, value.y, value.z);
+}
+
+/// A point and one more number.
+#[inline(always)]
+pub(super) fn padded<S: Simd>(token: S, point: Vec3f, last: f32) -> S::F32x4 {
+    S::F32x4::load(token, &[point.x, point.y, point.z, last])
+}
+
+/// Sixteen records of four as rows: three coordinates, and the rest.
+#[inline(always)]
+fn columns<S: Simd>(token: S, records: [S::F32x4; BLOCK]) -> ([Row; 3], Row) {
+    let [x, y, z, last] = token.columns_x16(records);
+    let mut rest = [0.0; BLOCK];
+    last.store(&mut rest);
+    (stored(Vec3::new(x, y, z)), rest)
 }
 
 /// Eight numbers from `at` on in double precision.

@@ -1,8 +1,7 @@
 //! The light that samples have gathered, in a form that does not depend on the order in which it came.
 
-use super::rows::{array, array_f32, lanes_of};
 use crate::math::{Vec3, Vec3f};
-use simd::{F32Lanes, MaskLanes};
+use simd::F32Lanes;
 
 /// Light sums of a batch of samples, in 64-bit fixed point: integers add in any order to the same sum.
 ///
@@ -10,7 +9,8 @@ use simd::{F32Lanes, MaskLanes};
 /// and NaN contributions count as 0, so a film never holds anything that is not a finite number ≥ 0.
 #[derive(Debug, Default)]
 pub(super) struct Film {
-    sums: Vec<Vec3<i64>>,
+    /// Red, green, blue, and one number that is always 0 and makes rows fit registers.
+    sums: Vec<[i64; 4]>,
 }
 
 /// Fixed-point units of the light value 1.
@@ -23,7 +23,7 @@ impl Film {
     /// Start over with `samples` black samples.
     pub(super) fn reset(&mut self, samples: usize) {
         self.sums.clear();
-        self.sums.resize(samples, Vec3::splat(0));
+        self.sums.resize(samples, [0; 4]);
     }
 
     /// Add `light` to a sample.
@@ -34,7 +34,9 @@ impl Film {
     pub(super) fn add(&mut self, sample: u32, light: Vec3f) {
         let sum = &mut self.sums[sample as usize];
         // Saturation keeps the order free: all addends are ≥ 0, so the result is min(true sum, largest).
-        *sum = sum.zip(light.map(to_fixed), i64::saturating_add);
+        for (sum, light) in sum.iter_mut().zip(light.to_array()) {
+            *sum = sum.saturating_add(to_fixed(light));
+        }
     }
 
     /// As [`add`](Self::add), for the samples of the lanes `mask`.
@@ -43,19 +45,13 @@ impl Film {
     /// If there is no such sample.
     #[inline(always)]
     pub(super) fn add_lanes<L: F32Lanes>(&mut self, token: L::Token, mask: L::Mask, sample: L::U32, light: Vec3<L>) {
-        let samples = array::<L>(sample);
-        let rows = [units(token, light.x), units(token, light.y), units(token, light.z)].map(array_f32);
-        let [r, g, b] = [rows[0].as_ref(), rows[1].as_ref(), rows[2].as_ref()];
-        for lane in lanes_of(mask.bits()) {
-            let addend = Vec3::new(r[lane] as i64, g[lane] as i64, b[lane] as i64);
-            let sum = &mut self.sums[samples.as_ref()[lane] as usize];
-            *sum = sum.zip(addend, i64::saturating_add);
-        }
+        let addends = [units(token, light.x), units(token, light.y), units(token, light.z), L::splat(token, 0.0)];
+        L::accumulate(addends, mask, sample, &mut self.sums);
     }
 
     /// The light of every sample, in order; finite and ≥ 0.
     pub(super) fn colors(&self) -> impl ExactSizeIterator<Item = Vec3f> {
-        self.sums.iter().map(|sum| sum.map(|a| (a as f64 / f64::from(UNIT)) as f32))
+        self.sums.iter().map(|&[r, g, b, _]| Vec3::new(r, g, b).map(|sum| (sum as f64 / f64::from(UNIT)) as f32))
     }
 }
 
@@ -75,7 +71,7 @@ fn units<L: F32Lanes>(token: L::Token, light: L) -> L {
 mod tests {
     use super::*;
     use crate::shading::one::{One, one};
-    use simd::{Scalar, ScalarU32, U32Lanes};
+    use simd::{MaskLanes, Scalar, ScalarU32, U32Lanes};
 
     #[test]
     fn lanes_add_as_one_by_one() {
@@ -84,7 +80,8 @@ mod tests {
             film.reset(1);
             let all = <One as F32Lanes>::Mask::from_bits(Scalar, 1);
             film.add_lanes(Scalar, all, ScalarU32::splat(Scalar, 0), Vec3::splat(one(light)));
-            assert_eq!(film.sums[0], Vec3::splat(to_fixed(light)), "{light}");
+            let sum = to_fixed(light);
+            assert_eq!(film.sums[0], [sum, sum, sum, 0], "{light}");
         }
     }
 

@@ -94,7 +94,7 @@ impl<L: F32Lanes> Vertex<L> {
         scatters: L::Mask,
         cuts: &mut impl Cuts<L>,
     ) -> Scattered<L> {
-        let material = context.look.table().scattering::<L>(token, scatters, self.material);
+        let material = context.look.table().scattering::<L>(self.material);
         let transparent = scatters & self.finish.is_transparent(token);
         let interface = self.interface(token, context, transparent, &material);
         let (through, refracts) = self.refracted(token, transparent, interface.eta);

@@ -73,14 +73,14 @@ impl PreparedMaterial {
     }
 
     /// What [`Scattering`] is made of.
-    pub(super) fn scattering_row(&self) -> [f32; 8] {
+    pub(super) fn scattering_rows(&self) -> [[f32; 4]; 2] {
         let (reflect, transmit) = (self.reflect, self.transmit);
         let code = match self.reflectance {
             Reflectance::Constant => Scattering::CONSTANT,
             Reflectance::Fresnel => Scattering::FRESNEL,
             Reflectance::Schlick => Scattering::SCHLICK,
         };
-        [reflect.x, reflect.y, reflect.z, transmit.x, transmit.y, transmit.z, self.ior, code]
+        [[reflect.x, reflect.y, reflect.z, self.ior], [transmit.x, transmit.y, transmit.z, code]]
     }
 
     /// Halvings of light per internal length of the inside.
@@ -122,7 +122,7 @@ impl PreparedMaterial {
     /// reflectance become 1.
     pub fn split(&self, cos_i: f32, eta: f32, total: bool) -> (Vec3f, Vec3f) {
         let total = simd::MaskLanes::from_bits(Scalar, u32::from(total && self.is_transparent()));
-        let scattering = Scattering::from_row(self.scattering_row().map(one));
+        let scattering = Scattering::from_rows(self.scattering_rows().map(|row| row.map(one)));
         let (reflect, transmit) = scattering.split(Scalar, one(cos_i), one(eta), total);
         (values(reflect), values(transmit))
     }

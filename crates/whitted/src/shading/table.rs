@@ -1,4 +1,4 @@
-//! All materials of a scene in the form that lanes want: a row of numbers for each.
+//! All materials of a scene in the form that lanes want.
 
 use super::local::LocalSurface;
 use super::optics;
@@ -14,20 +14,25 @@ mod bits {
     pub(super) const CHECKERED: u32 = 8;
 }
 
-/// The materials, row by row.
+/// The materials, four numbers in each table, so that one read finds what a lane wants.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MaterialTable {
-    bits: Vec<u32>,
-    /// Even colour, strengths of ambient and diffuse light, highlight, exponent, form.
-    local: Vec<[f32; 10]>,
-    /// Odd colour, frequency, shift.
-    checkers: Vec<[f32; 7]>,
-    /// Reflected and transmitted shares, index of refraction, reflectance.
-    scattering: Vec<[f32; 8]>,
-    /// Indices of refraction.
-    iors: Vec<f32>,
+    /// Even colour, strength of ambient light.
+    colors: Vec<[f32; 4]>,
+    /// Highlight, strength of diffuse light.
+    highlights: Vec<[f32; 4]>,
+    /// Exponent and form of the highlight, what the material does, index of refraction.
+    kinds: Vec<[f32; 4]>,
+    /// Odd colour, frequency.
+    checkers: Vec<[f32; 4]>,
+    /// Shift of the checks.
+    shifts: Vec<[f32; 4]>,
+    /// Reflected share, index of refraction.
+    reflected: Vec<[f32; 4]>,
+    /// Transmitted share, reflectance.
+    transmitted: Vec<[f32; 4]>,
     /// Halvings of light per internal length.
-    absorption: Vec<[f32; 3]>,
+    absorption: Vec<[f32; 4]>,
     absorbs: bool,
     has_transparent: bool,
 }
@@ -57,14 +62,17 @@ impl MaterialTable {
         ] {
             bits |= if is_set { bit } else { 0 };
         }
-        self.bits.push(bits);
-        let (ambient, diffuse) = (material.ambient(), local.diffuse);
-        self.local.push([even.x, even.y, even.z, ambient, diffuse, s.x, s.y, s.z, local.exponent, is_blinn]);
-        self.checkers.push([odd.x, odd.y, odd.z, frequency, shift.x, shift.y, shift.z]);
-        self.scattering.push(material.scattering_row());
-        self.iors.push(material.ior());
-        self.absorption.push(material.absorb().to_array());
-        self.absorbs |= material.absorb().max_component() > 0.0;
+        let absorb = material.absorb();
+        let [reflected, transmitted] = material.scattering_rows();
+        self.colors.push([even.x, even.y, even.z, material.ambient()]);
+        self.highlights.push([s.x, s.y, s.z, local.diffuse]);
+        self.kinds.push([local.exponent, is_blinn, f32::from_bits(bits), material.ior()]);
+        self.checkers.push([odd.x, odd.y, odd.z, frequency]);
+        self.shifts.push([shift.x, shift.y, shift.z, 0.0]);
+        self.reflected.push(reflected);
+        self.transmitted.push(transmitted);
+        self.absorption.push([absorb.x, absorb.y, absorb.z, 0.0]);
+        self.absorbs |= absorb.max_component() > 0.0;
         self.has_transparent |= material.is_transparent();
     }
 
@@ -73,8 +81,8 @@ impl MaterialTable {
         self.has_transparent
     }
 
-    /// The parameters of the material of each lane that local light needs, at these points. `active` is not empty, and
-    /// only those lanes mean anything.
+    /// The parameters of the material of each lane that local light needs, at these points. `material` is one in all
+    /// lanes, also those that are not `active`, which mean nothing.
     #[inline(always)]
     pub(crate) fn finish<L: F32Lanes>(
         &self,
@@ -83,24 +91,23 @@ impl MaterialTable {
         material: L::U32,
         position: Vec3<L>,
     ) -> Finish<L> {
-        let index = Index::<L>::new(token, active, material);
-        let bits = L::U32::gather(&self.bits, index.lanes);
-        let [r, g, b, ambient, diffuse, sr, sg, sb, exponent, is_blinn] = index.rows(token, &self.local);
-        let mut color = Vec3::new(r, g, b);
-        let mut finish = Finish { bits, color, ambient, diffuse, specular: Vec3::new(sr, sg, sb), exponent, is_blinn };
+        let [r, g, b, ambient] = L::gather_x4(&self.colors, material);
+        let [sr, sg, sb, diffuse] = L::gather_x4(&self.highlights, material);
+        let [exponent, is_blinn, bits, _] = L::gather_x4(&self.kinds, material);
+        let (color, specular) = (Vec3::new(r, g, b), Vec3::new(sr, sg, sb));
+        let mut finish = Finish { bits: bits.to_bits(), color, ambient, diffuse, specular, exponent, is_blinn };
         if (finish.has(token, bits::CHECKERED) & active).any() {
-            let [r, g, b, frequency, x, y, z] = index.rows(token, &self.checkers);
-            color = texture::checker(token, color, Vec3::new(r, g, b), frequency, Vec3::new(x, y, z), position);
+            let [r, g, b, frequency] = L::gather_x4(&self.checkers, material);
+            let [x, y, z, _] = L::gather_x4(&self.shifts, material);
+            finish.color = texture::checker(token, color, Vec3::new(r, g, b), frequency, Vec3::new(x, y, z), position);
         }
-        finish.color = color;
         finish
     }
 
-    /// The shares of light that surfaces reflect and transmit, as for [`finish`](Self::finish).
+    /// The shares of light that surfaces reflect and transmit; `material` is one in all lanes.
     #[inline(always)]
-    pub(crate) fn scattering<L: F32Lanes>(&self, token: L::Token, active: L::Mask, material: L::U32) -> Scattering<L> {
-        let index = Index::<L>::new(token, active, material);
-        Scattering::from_row(index.rows(token, &self.scattering))
+    pub(crate) fn scattering<L: F32Lanes>(&self, material: L::U32) -> Scattering<L> {
+        Scattering::from_rows([L::gather_x4(&self.reflected, material), L::gather_x4(&self.transmitted, material)])
     }
 
     /// What is left of light after `distance` ≥ 0 inside `medium` (Beer, Lambert); 1 where nothing is absorbed, even at
@@ -117,63 +124,16 @@ impl MaterialTable {
         if !(self.absorbs && inside.any()) {
             return one;
         }
-        let [r, g, b] = Index::<L>::new(token, inside, medium).rows(token, &self.absorption);
+        let medium = L::U32::select(inside, medium, L::U32::splat(token, 0));
+        let [r, g, b, _] = L::gather_x4(&self.absorption, medium);
         select(inside, optics::transmittance(token, Vec3::new(r, g, b), distance), one)
     }
 
     /// Index of refraction of `medium` where a ray is `inside` one, else 1.
     #[inline(always)]
     pub(crate) fn ior<L: F32Lanes>(&self, token: L::Token, inside: L::Mask, medium: L::U32) -> L {
-        let index = L::U32::select(inside, medium, L::U32::splat(token, 0));
-        L::select(inside, L::gather(&self.iors, index), L::splat(token, 1.0))
-    }
-}
-
-/// Which row each lane wants: valid in all lanes.
-struct Index<L: F32Lanes> {
-    lanes: L::U32,
-    numbers: <L::U32 as U32Lanes>::Array,
-    /// All lanes want the same row.
-    uniform: bool,
-}
-
-impl<L: F32Lanes> Index<L> {
-    /// Lanes that are not active get the row of one that is.
-    #[inline(always)]
-    fn new(token: L::Token, active: L::Mask, wanted: L::U32) -> Self {
-        let mut numbers = <L::U32 as U32Lanes>::Array::default();
-        wanted.store(&mut numbers);
-        let first = active.bits().trailing_zeros() as usize % L::WIDTH;
-        let first = L::U32::splat(token, numbers.as_ref()[first]);
-        let lanes = L::U32::select(active, wanted, first);
-        lanes.store(&mut numbers);
-        Self { lanes, numbers, uniform: lanes.eq(first).all() }
-    }
-
-    /// The numbers of each lane's row.
-    #[inline(always)]
-    fn rows<const N: usize>(&self, token: L::Token, table: &[[f32; N]]) -> [L; N] {
-        let numbers = self.numbers.as_ref();
-        let mut out = [L::splat(token, 0.0); N];
-        if self.uniform {
-            let row = &table[numbers[0] as usize];
-            for i in 0..N {
-                out[i] = L::splat(token, row[i]);
-            }
-            return out;
-        }
-        // Scalar copies: as fast as sixteen gathers by hardware, and tables stay one row for each material.
-        let mut columns = [L::Array::default(); N];
-        for lane in 0..L::WIDTH {
-            let row = &table[numbers[lane] as usize];
-            for i in 0..N {
-                columns[i].as_mut()[lane] = row[i];
-            }
-        }
-        for i in 0..N {
-            out[i] = L::load(token, &columns[i]);
-        }
-        out
+        let medium = L::U32::select(inside, medium, L::U32::splat(token, 0));
+        L::select(inside, L::gather_x4(&self.kinds, medium)[3], L::splat(token, 1.0))
     }
 }
 
@@ -246,9 +206,9 @@ impl Scattering<()> {
 }
 
 impl<L: F32Lanes> Scattering<L> {
-    /// From rows like those of [`PreparedMaterial::scattering_row`].
+    /// From rows like those of [`PreparedMaterial::scattering_rows`].
     #[inline(always)]
-    pub(super) fn from_row([r, g, b, tr, tg, tb, ior, reflectance]: [L; 8]) -> Self {
+    pub(super) fn from_rows([[r, g, b, ior], [tr, tg, tb, reflectance]]: [[L; 4]; 2]) -> Self {
         Self { reflect: Vec3::new(r, g, b), transmit: Vec3::new(tr, tg, tb), ior, reflectance }
     }
 

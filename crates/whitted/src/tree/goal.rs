@@ -253,7 +253,7 @@ mod tests {
         for _ in 0..200 {
             let offers: [(u16, [f32; 16], u32); 6] = std::array::from_fn(|_| {
                 let t = std::array::from_fn(|_| random.below(3) as f32);
-                (random.below(1 << 16) as u16, t, random.below(100) as u32)
+                (random.below(1 << 16) as u16, t, random.below(100))
             });
             let (mut primitive, mut limits) = ([NONE; 16], [2.0; 16]);
             let mut goal = Closest { primitive: &mut primitive };

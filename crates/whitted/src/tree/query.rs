@@ -84,7 +84,7 @@ impl Query<'_> {
             hits.clear(chunk.clone());
             let goal = Closest { primitive: &mut hits.primitive[chunk.clone()] };
             counts += self.walk_filtered(rays, chunk.clone(), goal, filter, scratch);
-            scratch.rays.found(&hits.primitive[chunk.clone()], &mut hits.t[chunk.clone()]);
+            scratch.rays.found(self.level, &hits.primitive[chunk.clone()], &mut hits.t[chunk.clone()]);
             self.refine(rays, &mut hits, chunk);
         }
         counts
@@ -99,7 +99,7 @@ impl Query<'_> {
             return Hit::MISS;
         }
         let mut t = [Hit::MISS.t];
-        scratch.rays.found(&primitive, &mut t);
+        scratch.rays.found(self.level, &primitive, &mut t);
         let refined = self.primitives.refine(ray, t[0], primitive[0]);
         Hit { t: refined.t, u: refined.u, v: refined.v, primitive: primitive[0], instance: NONE }
     }
@@ -127,7 +127,7 @@ impl Query<'_> {
             let primitive = &mut hits.primitive[chunk.clone()];
             let mut goal = Next { primitive, after: &after[chunk.clone()] };
             counts += self.walk(rays, chunk.clone(), &mut goal, scratch);
-            scratch.rays.found(&hits.primitive[chunk.clone()], &mut hits.t[chunk.clone()]);
+            scratch.rays.found(self.level, &hits.primitive[chunk.clone()], &mut hits.t[chunk.clone()]);
             for index in chunk.clone() {
                 after[index] = (hits.t[index], hits.primitive[index]);
             }

@@ -114,7 +114,8 @@ impl<G: Goal> Walk<'_, G> {
         counts: &mut Counts,
     ) {
         counts.primitive_tests += (count * super::leaf::BLOCK) as u64;
-        let (t_min, mut limit) = (self.rays.nodes[index].t_min(), self.rays.nodes[index].limit());
+        let ray = self.rays.node(index);
+        let (t_min, mut limit) = (ray.t_min(), ray.limit());
         let blocks = first..first + count;
         match kind {
             LeafKind::Triangles => {

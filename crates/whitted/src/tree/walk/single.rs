@@ -72,7 +72,7 @@ pub(super) fn interleaved<S: Simd, G: Goal>(
 impl Path {
     #[inline(always)]
     fn new<G: Goal>(walk: &Walk<'_, G>, stack: &mut Stack, index: usize, start: Child, base: usize) -> Self {
-        (stack.entry[base], stack.child[base]) = (walk.rays.nodes[index].t_min(), start.0);
+        (stack.entry[base], stack.child[base]) = (walk.rays.node(index).t_min(), start.0);
         Self { index, base, top: base + 1 }
     }
 
@@ -85,7 +85,7 @@ impl Path {
         stack: &mut Stack,
         counts: &mut Counts,
     ) -> bool {
-        let ray = &walk.rays.nodes[self.index];
+        let ray = walk.rays.node(self.index);
         loop {
             if self.top == self.base {
                 return false;

@@ -27,7 +27,7 @@ impl<S: Simd> Slabs<S> {
     ///
     /// `far_offset` is the ray's offset for the planes where it leaves. A NaN from a plane is passed over.
     #[inline(always)]
-    pub(super) fn enter(&self, token: S, ray: &NodeRay, far_offset: [f32; 3]) -> (u16, S::F32x16) {
+    pub(super) fn enter(&self, token: S, ray: NodeRay<'_>, far_offset: [f32; 3]) -> (u16, S::F32x16) {
         let inverse = crate::geometry::splat(token, ray.inverse());
         let near = crate::geometry::splat(token, ray.near());
         let far = crate::geometry::splat(token, far_offset);

@@ -59,7 +59,7 @@ pub(super) fn walk<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, together:
             continue;
         }
         for index in walk.rays.packet(packet) {
-            let ray = &walk.rays.nodes[index];
+            let ray = walk.rays.node(index);
             if ray.limit() >= ray.t_min() {
                 lists.octants[walk.rays.octant[index] as usize & 7].push(index as u16);
             }
@@ -140,7 +140,7 @@ fn enter_each<S: Simd, const SLACK: bool>(
     let slabs = Slabs::load(token, node, octant);
     let mut any = 0;
     for (mask, &id) in masks.iter_mut().zip(ids) {
-        let ray = &rays.nodes[id as usize];
+        let ray = rays.node(id as usize);
         let far = if SLACK { rays.far(id as usize) } else { ray.near() };
         *mask = slabs.enter(token, ray, far).0;
         any |= *mask;

@@ -2,13 +2,14 @@
 //!
 //! The same formulas as for sixteen: the functions of lanes, at one lane.
 
-use super::{PreparedRays, Record, Records, distance, offsets, reciprocal, sign, sound};
+use super::records::{Records, offsets, reciprocal, sign};
+use super::{PreparedRays, distance, sound};
 use crate::geometry::ShearedRay;
 use crate::geometry::sphere::SphereRay;
 use crate::math::{Vec3, Vec3f};
 use crate::ray::Ray;
 use crate::tree::Tree;
-use simd::{F32Lanes, MaskLanes, Scalar, ScalarF32, U32Lanes};
+use simd::{F32Lanes, MaskLanes, Octet, Scalar, ScalarF32, U32Lanes};
 
 type One = ScalarF32<1>;
 
@@ -38,12 +39,12 @@ impl PreparedRays {
         self.record_node(from.tree, origin.map(lane), direction.map(lane), ray.t_min);
         if from.primitives.triangle_count() > 0 {
             let ShearedRay { origin: [ox, oy, oz], shear: [sx, sy, sz], axis, .. } = ShearedRay::new(origin, direction);
-            self.sheared[0] = Record([ox, oy, oz, sx, sy, sz, f32::from_bits(axis), 0.0]);
+            self.sheared[0] = Octet([ox, oy, oz, sx, sy, sz, f32::from_bits(axis), 0.0]);
         }
         if !from.primitives.spheres().is_empty() {
             let SphereRay { origin: [ox, oy, oz], direction: [dx, dy, dz], inverse_length_squared, .. } =
                 SphereRay::new(origin, direction);
-            self.spheres[0] = Record([ox, oy, oz, dx, dy, dz, inverse_length_squared, 0.0]);
+            self.spheres[0] = Octet([ox, oy, oz, dx, dy, dz, inverse_length_squared, 0.0]);
         }
         self.recorded.insert(0);
     }
@@ -59,7 +60,7 @@ impl PreparedRays {
         let y = offsets(origin.y, inverse.y, slack);
         let z = offsets(origin.z, inverse.z, slack);
         let [ix, iy, iz, nx, ny, nz] = [inverse.x, inverse.y, inverse.z, x.0, y.0, z.0].map(value);
-        self.nodes[0].0 = Record([ix, iy, iz, nx, ny, nz, t_min, self.limit[0]]);
+        self.nodes[0] = Octet([ix, iy, iz, nx, ny, nz, t_min, self.limit[0]]);
         if self.any_slack {
             self.far[0] = [x.1, y.1, z.1].map(value);
         }
