@@ -169,6 +169,22 @@ fn files_may_come_and_go_and_sizes_change() {
 }
 
 #[test]
+fn a_window_that_is_covered_takes_no_time() {
+    let folder = folder("covered");
+    let Some(desk) = Desk::start() else { return };
+    let file = folder.join("scene.toml");
+    fs::write(&file, scene("#c04020", CAMERA)).unwrap();
+    let viewer = Viewer::open(&desk, &folder, &["--size", SIZE], &file);
+    viewer.key("space");
+    wait_for("the turntable", || viewer.cpu_share() > 0.2);
+    let mut above = Viewer::open(&desk, &folder, &["--size", "800x600"], &file);
+    wait_for("rest below the other window", || viewer.cpu_share() < 0.03);
+    above.key("Escape");
+    assert_eq!(above.exit_code(), 0);
+    wait_for("the turntable again", || viewer.cpu_share() > 0.2);
+}
+
+#[test]
 fn without_a_display_it_says_so() {
     let folder = folder("no-display");
     let file = folder.join("scene.toml");

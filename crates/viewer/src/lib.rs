@@ -15,7 +15,7 @@
 //! # Invariants
 //! * The finished picture is, to the byte, the one that `whitted render` gives with the same settings.
 //! * The thread of the window never waits for rendering, reading or writing.
-//! * At rest nothing runs but the watch over the scene's files.
+//! * At rest, and while the window cannot be seen, nothing runs but the watch over the scene's files.
 //! * It opens no file but to look at its time stamp: its [`Host`] reads and writes.
 
 #![forbid(unsafe_code)]
@@ -39,6 +39,8 @@ mod screen;
 #[cfg(feature = "window")]
 pub mod script;
 mod session;
+#[cfg(feature = "window")]
+mod sight;
 #[cfg(feature = "window")]
 mod window;
 

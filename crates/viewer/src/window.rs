@@ -5,6 +5,7 @@ use crate::host::Host;
 use crate::input::{Button, Input, Key, Modifiers};
 use crate::options::Options;
 use crate::session::{Effect, Session};
+use crate::sight::{GLANCE_AWAY, Sight};
 use std::io::Write;
 use std::num::NonZeroU32;
 use std::rc::Rc;
@@ -81,6 +82,7 @@ struct Open {
     window: Rc<SystemWindow>,
     app: App,
     clipboard: Option<arboard::Clipboard>,
+    sight: Sight,
 }
 
 impl Shell {
@@ -103,7 +105,7 @@ impl Shell {
         let size: [u32; 2] = window.inner_size().into();
         session.resize(size, Instant::now());
         let app = App::new(session, size, window.scale_factor() as f32);
-        Ok(Open { surface, window, app, clipboard: None })
+        Ok(Open { surface, window, app, clipboard: None, sight: Sight::default() })
     }
 }
 
@@ -156,10 +158,7 @@ impl ApplicationHandler<Woken> for Shell {
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
         let now = Instant::now();
-        let (next, draw) = open.app.tick(now);
-        if draw {
-            open.window.request_redraw();
-        }
+        let next = open.tick(now);
         for effect in open.app.session.take_effects() {
             match effect {
                 Effect::Close => event_loop.exit(),
@@ -178,7 +177,20 @@ impl ApplicationHandler<Woken> for Shell {
 }
 
 impl Open {
+    /// Move on, and ask for what is to be drawn. When to be called again at the latest.
+    fn tick(&mut self, now: Instant) -> Option<Duration> {
+        let is_seen = self.sight.is_seen(now, || self.window.is_minimized() == Some(true));
+        self.app.session.set_visible(is_seen);
+        let (next, draw) = self.app.tick(now);
+        if draw {
+            self.sight.picture_waits(now);
+            self.window.request_redraw();
+        }
+        if is_seen { next } else { Some(GLANCE_AWAY) }
+    }
+
     fn draw(&mut self) {
+        self.sight.picture_is_taken();
         let size: [u32; 2] = self.window.inner_size().into();
         let (Some(width), Some(height)) = (NonZeroU32::new(size[0]), NonZeroU32::new(size[1])) else { return };
         // A display that refuses a picture may take the next one; if it has gone, the loop ends.
@@ -195,6 +207,7 @@ impl Open {
     fn event(&mut self, event: &WindowEvent) {
         match event {
             WindowEvent::Resized(size) => self.app.resize((*size).into()),
+            WindowEvent::Occluded(is_covered) => self.sight.cover(*is_covered),
             WindowEvent::ScaleFactorChanged { scale_factor, .. } => self.app.set_scale(*scale_factor as f32),
             // A key that was down when the window got the focus was pressed for another window, or comes again.
             WindowEvent::KeyboardInput { event, is_synthetic, .. } => {

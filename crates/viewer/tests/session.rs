@@ -392,6 +392,34 @@ fn at_rest_nothing_asks_for_attention() {
 }
 
 #[test]
+fn nothing_moves_while_nobody_sees_it() {
+    let desk = Desk::new(scene());
+    let mut session = session(&desk);
+    rest(&mut session);
+    session.act(Action::Turntable);
+    let before = session.picture().drafts;
+    serve_until(&mut session, "drafts", |session| session.picture().drafts > before + 3);
+    session.set_visible(false);
+    assert_eq!(session.tick(Instant::now()), None, "no tick is due");
+    // What was on order is painted.
+    std::thread::sleep(Duration::from_millis(300));
+    let (drafts, camera) = (session.picture().drafts, *session.camera());
+    for _ in 0..20 {
+        session.tick(Instant::now());
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert_eq!((session.picture().drafts, *session.camera()), (drafts, camera));
+    // Files are followed all the same.
+    let mut edited = scene();
+    edited.spheres.truncate(11);
+    desk.edit(Ok(edited));
+    serve_until(&mut session, "other shapes", |session| session.scene().is_some_and(|s| s.spheres.len() == 11));
+    session.set_visible(true);
+    serve_until(&mut session, "drafts again", |session| session.picture().drafts > drafts + 3);
+    assert_ne!(*session.camera(), camera);
+}
+
+#[test]
 fn every_view_is_the_one_that_a_render_writes() {
     let desk = Desk::new(scene());
     let mut session = session(&desk);

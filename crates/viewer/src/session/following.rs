@@ -34,7 +34,7 @@ impl Session {
             self.settings = Settings { size, ..ready.scene.settings.clone() };
         }
         match &before {
-            Some(_) => self.edit = ready.saved,
+            Some(_) => self.edit = ready.saved.filter(|_| self.is_visible),
             None => ready.warnings.iter().for_each(|warning| self.notes.add(warning.clone(), now)),
         }
         self.look = Some(look_of(&ready.scene));

@@ -92,6 +92,8 @@ pub struct Session {
     rate: Rate,
     recorder: Recorder,
     shown: Shown,
+    /// Somebody can see the picture: else nothing moves and nothing new is painted.
+    is_visible: bool,
     effects: Vec<Effect>,
     saves: Vec<Destination>,
     wanted: Option<Wanted>,
@@ -143,6 +145,7 @@ impl Session {
             rate: Rate::default(),
             recorder: Recorder::default(),
             shown: Shown { help: false, panel: false, clean: false },
+            is_visible: true,
             effects: Vec::new(),
             saves: Vec::new(),
             wanted: None,
@@ -162,6 +165,16 @@ impl Session {
             self.notes.add(line, now);
             self.revision += 1;
         }
+        if self.is_visible {
+            self.advance(now);
+        }
+        self.save_what_waits();
+        self.revision += u64::from(self.notes.clear_old(now));
+        self.next_tick(now)
+    }
+
+    /// Move the camera, and order the picture that it sees.
+    fn advance(&mut self, now: Instant) {
         let seconds = self.last_tick.map_or(0.0, |last| now.duration_since(last).as_secs_f64());
         self.last_tick = Some(now);
         if self.navigator.advance(seconds) {
@@ -170,14 +183,20 @@ impl Session {
         self.recorder.observe(self.navigator.camera(), now);
         self.order(now);
         self.tell_of_edit(now);
-        self.save_what_waits();
-        self.revision += u64::from(self.notes.clear_old(now));
-        self.next_tick(now)
+    }
+
+    /// Whether anybody can see the picture. While nobody can, nothing moves, and nothing new is painted.
+    pub fn set_visible(&mut self, is_visible: bool) {
+        if !is_visible {
+            // Nobody has waited for what happens meanwhile.
+            (self.last_tick, self.edit) = (None, None);
+        }
+        self.is_visible = is_visible;
     }
 
     fn next_tick(&self, now: Instant) -> Option<Duration> {
-        let quiet = self.quiet_in(now);
-        let step = self.navigator.is_moving().then_some(STEP);
+        let quiet = self.quiet_in(now).filter(|_| self.is_visible);
+        let step = (self.is_visible && self.navigator.is_moving()).then_some(STEP);
         let note = self.notes.next_end(now);
         [step, quiet, note].into_iter().flatten().min()
     }
