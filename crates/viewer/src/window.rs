@@ -40,6 +40,9 @@ pub enum WindowError {
     /// There is no display, or it has refused.
     #[error("no window can be opened: {0}\nhint: a picture needs no display: `whitted render`")]
     Display(String),
+    /// The display has gone, and the window with it.
+    #[error("the display is gone: {0}")]
+    Lost(String),
     /// The system has no thread left.
     #[error("cannot start a thread: {0}")]
     Thread(#[from] std::io::Error),
@@ -59,7 +62,7 @@ pub fn run(host: Arc<dyn Host>, options: Options) -> Result<(), WindowError> {
     event_loop.set_control_flow(ControlFlow::Wait);
     let context = softbuffer::Context::new(event_loop.owned_display_handle()).map_err(|error| refused(&error))?;
     let mut shell = Shell { host, options, proxy: event_loop.create_proxy(), context, open: None, error: None };
-    event_loop.run_app(&mut shell).map_err(|error| refused(&error))?;
+    event_loop.run_app(&mut shell).map_err(|error| WindowError::Lost(error.to_string()))?;
     shell.error.map_or(Ok(()), Err)
 }
 
