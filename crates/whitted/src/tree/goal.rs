@@ -15,26 +15,8 @@ pub(crate) trait Goal {
     /// the range shrinks; negative infinity ends the ray.
     fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32>;
 
-    /// Sixteen consecutive rays from `first` on meet one primitive where `hit` is set; returns their new limits.
-    #[inline(always)]
-    fn offer_row<F: F32Lanes<Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>>(
-        &mut self,
-        token: F::Token,
-        first: usize,
-        hit: F::Mask,
-        t: F,
-        primitive: u32,
-        limit: F,
-    ) -> F {
-        let mut rays = [first as u16; 16];
-        for lane in 0..16 {
-            rays[lane] += lane as u16;
-        }
-        offer_each(self, token, &rays, hit, t, primitive, limit)
-    }
-
-    /// As [`offer_row`](Self::offer_row), for any sixteen rays, which pass by one primitive after the other: what they
-    /// find may stay in `found`, at first [`NONE`], until it is settled.
+    /// Sixteen rays with these numbers, which pass by one primitive after the other, meet one where `hit` is set; returns
+    /// their new limits. What they find may stay in `found`, at first [`NONE`], until it is settled.
     #[inline(always)]
     fn offer_lanes<F: F32Lanes<Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>>(
         &mut self,
@@ -52,6 +34,24 @@ pub(crate) trait Goal {
     /// Take what a ray has found, which is not [`NONE`].
     #[inline(always)]
     fn settle(&mut self, _ray: usize, _found: u32) {}
+
+    /// Take what sixteen consecutive rays from `first` on have found.
+    #[inline(always)]
+    fn settle_row<F: F32Lanes<U32: U32Lanes<Array = [u32; 16]>>>(
+        &mut self,
+        token: F::Token,
+        first: usize,
+        found: F::U32,
+    ) {
+        let mut ids = [NONE; 16];
+        found.store(&mut ids);
+        let mut bits = (!found.eq(F::U32::splat(token, NONE))).bits();
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize % 16;
+            bits &= bits - 1;
+            self.settle(first + lane, ids[lane]);
+        }
+    }
 }
 
 /// [`Goal::offer`] for each lane that hit.
@@ -112,24 +112,6 @@ impl Goal for Closest<'_> {
     }
 
     #[inline(always)]
-    fn offer_row<F: F32Lanes<Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>>(
-        &mut self,
-        token: F::Token,
-        first: usize,
-        hit: F::Mask,
-        t: F,
-        primitive: u32,
-        limit: F,
-    ) -> F {
-        let row = &mut self.primitive[first..first + 16];
-        let best = F::U32::load_slice(token, row);
-        let primitive = F::U32::splat(token, primitive);
-        let better = hit & (t.lt(limit) | (t.eq(limit) & primitive.lt(best)));
-        F::U32::select(better, primitive, best).store_slice(row);
-        F::select(better, t, limit)
-    }
-
-    #[inline(always)]
     fn offer_lanes<F: F32Lanes<Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>>(
         &mut self,
         token: F::Token,
@@ -153,6 +135,18 @@ impl Goal for Closest<'_> {
     #[inline(always)]
     fn settle(&mut self, ray: usize, found: u32) {
         self.primitive[ray] = found;
+    }
+
+    #[inline(always)]
+    fn settle_row<F: F32Lanes<U32: U32Lanes<Array = [u32; 16]>>>(
+        &mut self,
+        token: F::Token,
+        first: usize,
+        found: F::U32,
+    ) {
+        let row = &mut self.primitive[first..first + 16];
+        let nothing = found.eq(F::U32::splat(token, NONE));
+        F::U32::select(nothing, F::U32::load_slice(token, row), found).store_slice(row);
     }
 }
 
@@ -211,7 +205,36 @@ impl Goal for Any<'_> {
         self.occlusion[ray] = Occlusion::Filtered;
         None
     }
+
+    #[inline(always)]
+    fn offer_lanes<F: F32Lanes<Array = [f32; 16], U32: U32Lanes<Array = [u32; 16]>>>(
+        &mut self,
+        token: F::Token,
+        _: &[u16; 16],
+        hit: F::Mask,
+        _: F,
+        primitive: u32,
+        limit: F,
+        found: &mut F::U32,
+    ) -> F {
+        if self.opaque.is_none_or(|set| set.contains(primitive)) {
+            *found = F::U32::select(hit, F::U32::splat(token, BLOCKED), *found);
+            return F::select(hit, F::splat(token, f32::NEG_INFINITY), limit);
+        }
+        // A ray that was blocked is not hit any more.
+        *found = F::U32::select(hit, F::U32::splat(token, FILTERED), *found);
+        limit
+    }
+
+    #[inline(always)]
+    fn settle(&mut self, ray: usize, found: u32) {
+        self.occlusion[ray] = if found == BLOCKED { Occlusion::Blocked } else { Occlusion::Filtered };
+    }
 }
+
+/// What [`Any`] finds, as lanes hold it.
+const FILTERED: u32 = Occlusion::Filtered as u32;
+const BLOCKED: u32 = Occlusion::Blocked as u32;
 
 const _: () = assert!(NONE == u32::MAX, "every primitive must come before NONE in the order of ties");
 

@@ -49,7 +49,7 @@ pub(super) fn spheres<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, ids: &
             }
         }
     }
-    abreast.finish(walk);
+    abreast.finish(token, walk);
 }
 
 /// The first id for lanes without one.
@@ -82,14 +82,15 @@ impl<S: Simd> Abreast<S> {
 
     /// Shorten the rays, and settle what they found.
     #[inline(always)]
-    fn finish<G: Goal>(self, walk: &mut Walk<'_, G>) {
+    fn finish<G: Goal>(self, token: S, walk: &mut Walk<'_, G>) {
         let (mut limits, mut found) = ([0.0; LANES], [NONE; LANES]);
         self.limit.store(&mut limits);
         self.found.store(&mut found);
-        let mut shorter = self.limit.lt(self.before).bits();
-        while shorter != 0 {
-            let lane = shorter.trailing_zeros() as usize % LANES;
-            shorter &= shorter - 1;
+        let nothing = self.found.eq(<S::F32x16 as F32Lanes>::U32::splat(token, NONE));
+        let mut changed = (!nothing | self.limit.lt(self.before)).bits();
+        while changed != 0 {
+            let lane = changed.trailing_zeros() as usize % LANES;
+            changed &= changed - 1;
             let ray = usize::from(self.ids[lane]);
             walk.rays.shorten(ray, limits[lane]);
             if found[lane] != NONE {

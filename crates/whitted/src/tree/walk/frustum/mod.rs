@@ -66,20 +66,20 @@ pub(super) fn walk<S: Simd, G: Goal>(
                 walk.tree.prefetch(Child(stack.child[top.saturating_sub(2)]));
             }
             ChildKind::Leaf { kind: LeafKind::Shapes, .. } => {
-                packet.finish(walk, first);
+                packet.finish(token, walk, first);
                 return false;
             }
             ChildKind::Leaf { kind, first: block, count } => {
                 let mut tested = 0;
                 for block in block..block + count {
                     tested += match kind {
-                        LeafKind::Triangles => packet.triangles(token, &pyramid, walk, first, block),
-                        _ => packet.spheres(token, &pyramid, walk, first, block),
+                        LeafKind::Triangles => packet.triangles(token, &pyramid, walk, block),
+                        _ => packet.spheres(token, &pyramid, walk, block),
                     };
                 }
                 counts.primitive_tests += u64::from(tested) * PACKET as u64;
                 if tested > budget {
-                    packet.finish(walk, first);
+                    packet.finish(token, walk, first);
                     return false;
                 }
                 budget -= tested;
@@ -89,6 +89,6 @@ pub(super) fn walk<S: Simd, G: Goal>(
             }
         }
     }
-    packet.finish(walk, first);
+    packet.finish(token, walk, first);
     true
 }

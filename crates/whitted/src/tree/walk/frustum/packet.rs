@@ -6,9 +6,9 @@ use super::{LANES, PACKET, ROWS};
 use crate::geometry::sphere::{self, SphereRays};
 use crate::geometry::triangle::{self, ShearedRays, dominant_axis, renamed};
 use crate::math::Vec3;
-use crate::ray;
+use crate::ray::{self, NONE};
 use crate::tree::goal::Goal;
-use simd::{F32Lanes, MaskLanes, Simd};
+use simd::{F32Lanes, MaskLanes, Simd, U32Lanes};
 
 /// A row of one value per ray.
 #[derive(Clone, Copy)]
@@ -36,6 +36,10 @@ pub(super) struct Packet {
     pub(super) shear: [Row; 3],
     t_min: Row,
     limit: Row,
+    /// What is not settled yet, see [`Goal::offer_lanes`].
+    found: [[u32; LANES]; ROWS],
+    /// Their numbers in the chunk.
+    ids: [[u16; LANES]; ROWS],
     pub(super) axis: usize,
     /// True if the rays run towards smaller coordinates of the dominant axis.
     pub(super) backward: bool,
@@ -69,6 +73,8 @@ impl Packet {
                 ray::Row::All(t_min) => Row([t_min; PACKET]),
             },
             limit: Row(*walk.rays.limits(first)),
+            found: [[NONE; LANES]; ROWS],
+            ids: numbers(first),
             axis,
             backward: octant[axis] != 0,
             octant: octant[0] | octant[1] << 1 | octant[2] << 2,
@@ -129,10 +135,14 @@ impl Packet {
         if reach < f32::INFINITY { reach.next_up().next_up() } else { reach }
     }
 
-    /// Write the rays' limits back.
+    /// Write the rays' limits back, and settle what they found.
     #[inline(always)]
-    pub(super) fn finish<G: Goal>(&self, walk: &mut Walk<'_, G>, first: usize) {
+    pub(super) fn finish<S: Simd, G: Goal>(&self, token: S, walk: &mut Walk<'_, G>, first: usize) {
         *walk.rays.limits_mut(first) = self.limit.0;
+        for row in 0..ROWS {
+            let found = <S::F32x16 as F32Lanes>::U32::load(token, &self.found[row]);
+            walk.goal.settle_row::<S::F32x16>(token, first + LANES * row, found);
+        }
     }
 
     /// Test the triangles of a block that the pyramid touches; returns how many.
@@ -142,7 +152,6 @@ impl Packet {
         token: S,
         pyramid: &Pyramid,
         walk: &mut Walk<'_, G>,
-        first: usize,
         block: usize,
     ) -> u32 {
         let block = &walk.tree.leaves.triangles[block];
@@ -173,7 +182,7 @@ impl Packet {
                 }
                 let rays = ShearedRays { origin, shear: [x, y, self.shear[2].load(token, row)] };
                 let found = triangle::intersect(token, &rays, vertices, self.t_min.load(token, row), limit);
-                self.offer::<S, G>(token, walk, first, row, found, block.primitive(lane));
+                self.offer(token, walk.goal, row, found, block.primitive(lane));
             }
         }
         count
@@ -186,7 +195,6 @@ impl Packet {
         token: S,
         pyramid: &Pyramid,
         walk: &mut Walk<'_, G>,
-        first: usize,
         block: usize,
     ) -> u32 {
         let block = &walk.tree.leaves.spheres[block];
@@ -214,33 +222,42 @@ impl Packet {
                 let roots = sphere::roots(&rays, center, radius_squared);
                 let (hit, t) = sphere::first_in_range(roots, t_min, limit);
                 let id = block.primitive(lane);
-                self.offer::<S, G>(token, walk, first, row, (hit, t), id);
+                self.offer(token, walk.goal, row, (hit, t), id);
                 if G::EVERY_CROSSING {
                     let (far, limit) = (roots.1, self.limit.load(token, row));
-                    self.offer::<S, G>(token, walk, first, row, (t_min.le(far) & far.le(limit), far), id);
+                    self.offer(token, walk.goal, row, (t_min.le(far) & far.le(limit), far), id);
                 }
             }
         }
         count
     }
 
-    /// Offer what the rays of a row hit at `t`.
+    /// Offer what the rays of a row hit at `t`. No jump asks whether any does: it could not be guessed.
     #[inline(always)]
     fn offer<S: Simd, G: Goal>(
         &mut self,
         token: S,
-        walk: &mut Walk<'_, G>,
-        first: usize,
+        goal: &mut G,
         row: usize,
         (hit, t): (<S::F32x16 as F32Lanes>::Mask, S::F32x16),
         primitive: u32,
     ) {
-        if hit.any() {
-            let limit = self.limit.load(token, row);
-            let limit = walk.goal.offer_row(token, first + LANES * row, hit, t, primitive, limit);
-            self.limit.store::<S>(row, limit);
-        }
+        let limit = self.limit.load(token, row);
+        let mut found = <S::F32x16 as F32Lanes>::U32::load(token, &self.found[row]);
+        let limit = goal.offer_lanes(token, &self.ids[row], hit, t, primitive, limit, &mut found);
+        self.limit.store::<S>(row, limit);
+        found.store(&mut self.found[row]);
     }
+}
+
+/// The numbers from `first` on.
+#[inline(always)]
+fn numbers(first: usize) -> [[u16; LANES]; ROWS] {
+    let mut numbers = [[first as u16; LANES]; ROWS];
+    for (offset, number) in (0..).zip(numbers.as_flattened_mut()) {
+        *number += offset;
+    }
+    numbers
 }
 
 /// The lanes whose dominant axis is `axis`, by the rule of [`dominant_axis`]: of equals the first.
