@@ -13,7 +13,8 @@ use whitted::render::{Aov, AovPicture, Cancel, Cancelled, Execution, Frame, Imag
 use whitted::render::{Renderer, Unwatched, aovs};
 use whitted::scene::{Antialias, Camera, NamedCamera, Prepared, Settings};
 
-/// Regions for each thread, at least: else some would wait for others.
+/// Regions for each thread, at least: else some would wait for others. Four times as many do not lessen the time in which
+/// threads wait (1.7 to 3.8 % in the still life, 9 to 11 % in mix-1000, 1280×720, two threads).
 const REGIONS_PER_THREAD: u32 = 4;
 
 /// Sides of the regions of drafts in pixels, from which the largest that gives enough regions is taken.
