@@ -33,9 +33,9 @@ const LINE: usize = 64;
 /// first-level cache, which has fewer ways than records have fields.
 const STAGGER: usize = 5 * LINE / size_of::<f32>();
 
-/// Records for which there is room as soon as there is one: most batches are as large, pages that nobody writes to cost
+/// Records for which there is room as soon as there is one: few batches are larger, pages that nobody writes to cost
 /// nothing, and growing writes to each twice.
-const LEAST: usize = 4096;
+const LEAST: usize = 16384;
 
 impl<const F: usize, const U: usize> Rows<F, U> {
     #[inline(always)]

@@ -49,7 +49,8 @@ pub(super) fn walk<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, together:
     // Every level leaves at most 15 lists behind, each no longer than the chunk.
     let room = (walk.tree.depth() * WIDTH + 2) * walk.rays.len() + SPARE;
     if lists.ids.len() < room {
-        lists.ids.resize(room, 0);
+        // New memory that is zero: most of it is never used, and then costs nothing.
+        lists.ids = vec![0; room];
     }
     for bucket in &mut lists.octants {
         bucket.clear();
