@@ -5,12 +5,16 @@ mod random_scene;
 use random_scene::random_scene;
 use std::sync::Mutex;
 use whitted::classic::{Caster, Grid, KdTree, Math, Objects, Split, Structure, TriangleTest, Walk};
-use whitted::math::Vec3f;
+use whitted::geometry::Plane;
+use whitted::math::{Vec3d, Vec3f};
 use whitted::render::{
     Cancel, Classic, Execution, Frame, Method, PixelRect, Progress, Region, Renderer, Silent, Unwatched, render,
     render_classic, render_rect,
 };
-use whitted::scene::{Antialias, Prepared, Scene, Settings, Shadows};
+use whitted::scene::{
+    Antialias, Camera, Light, LightKind, NamedCamera, NamedMaterial, Prepared, Scene, Settings, Shadows,
+};
+use whitted::shading::Material;
 use whitted::tree::{BuildOptions, TreeKind, WalkKind};
 
 fn settings(seed: u64) -> Settings {
@@ -66,6 +70,44 @@ fn wavefront_equals_recursion() {
         let found = picture(&prepared, &settings, &Execution::default());
         assert_same(&expected, &found, &format!("scene {seed}"));
     }
+}
+
+/// A floor, a lamp above it, and between them `count` glass spheres within each other.
+fn shells(count: u32) -> Scene {
+    let named = |name: &str, material| NamedMaterial { name: name.into(), material };
+    let white = Material { ambient: 0.0, diffuse: 1.0, ..Material::default() };
+    let glass = Material { transmit: Vec3f::splat(0.99), ior: 1.0, diffuse: 0.0, ambient: 0.0, ..Material::default() };
+    let radius = |shell: u32| 0.05 + 1.5 * f64::from(shell) / f64::from(count);
+    let floor = Plane { point: Vec3d::new(0.0, 0.0, 0.0), normal: Vec3d::new(0.0, 1.0, 0.0) };
+    Scene {
+        cameras: vec![NamedCamera {
+            name: String::new(),
+            camera: Camera { eye: Vec3d::new(0.0, 4.0, 0.5), look_at: Vec3d::ZERO, vfov: 60.0, ..Camera::default() },
+        }],
+        lights: vec![Light {
+            kind: LightKind::Point { position: Vec3d::new(0.0, 30.0, 0.0) },
+            color: Vec3f::splat(1.0),
+            inverse_square: false,
+        }],
+        ambient: Vec3f::ZERO,
+        materials: vec![named("white", white), named("glass", glass)],
+        spheres: (0..count).map(|shell| (Vec3d::new(0.0, 10.0, 0.0), radius(shell), 1)).collect(),
+        planes: vec![(floor, 0)],
+        ..Scene::default()
+    }
+}
+
+#[test]
+fn shadow_rays_through_more_surfaces_than_lists_hold_are_walked_one_by_one() {
+    let settings =
+        Settings { size: [64, 64], shadows: Shadows::Filter, antialias: Antialias::Off, ..Settings::default() };
+    let prepared = prepare(&shells(600), TreeKind::Best);
+    let expected = picture(&prepared, &settings, &Execution { method: Method::Recursive, ..Execution::default() });
+    let found = picture(&prepared, &settings, &Execution::default());
+    assert_same(&expected, &found, "600 shells");
+    let dark = expected.image.pixels.iter().filter(|pixel| pixel.x == 0.0).count();
+    let through_glass = expected.image.pixels.iter().filter(|pixel| pixel.x > 0.0 && pixel.x < 0.9).count();
+    assert!(dark > 100 && through_glass > 100, "{dark} dark pixels, {through_glass} lit through glass");
 }
 
 #[test]
