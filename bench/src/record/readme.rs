@@ -88,7 +88,9 @@ fn builds(record: &Value) -> Option<String> {
         let meshes = of_build.filter(|row| SCENES.iter().any(|(scene, _)| row["scene"] == *scene));
         let rates: Vec<f64> = meshes.filter_map(|row| row["mprim_per_cpu_second"].as_f64()).collect();
         let (low, high) = rates.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &rate| (l.min(rate), h.max(rate)));
-        (!rates.is_empty()).then(|| format!("{low:.1} to {high:.1} (`{build}`)"))
+        let (low, high) = (format!("{low:.1}"), format!("{high:.1}"));
+        let range = if low == high { low } else { format!("{low} to {high}") };
+        (!rates.is_empty()).then(|| format!("{range} (`{build}`)"))
     };
     let rates: Vec<String> = ["best", "fast"].into_iter().filter_map(rates).collect();
     (!rates.is_empty())
@@ -136,7 +138,7 @@ mod tests {
             "| bunny, 69 k triangles | 1.50× | 1.50× |",
             "equal work: mix-1000 6.0× A and 3.0× B.\n",
             "on two cores: 40 frames per second",
-            "1.5 to 1.5 (`best`).",
+            "1.5 (`best`).",
             "takes 1.00× (spheres) as long",
             "(bench/record/x.md)",
         ] {

@@ -51,9 +51,7 @@ impl Display {
         }
         display
     }
-}
 
-impl Display {
     /// Shows how far the tree is, from any thread; of what is told at once the greatest share stays.
     pub(crate) fn built(&self, share: f32) {
         const STEPS: u64 = 1000;

@@ -220,6 +220,8 @@ impl<P: Probe> Job<'_, P> {
         let done = AtomicUsize::new(0);
         regions
             .par_iter()
+            // Left to itself, rayon leaves runs of many regions to one thread, for which the others wait in the end.
+            .with_max_len(1)
             .map(|region| {
                 let result = self.renderer.workspaces.with(|workspace| {
                     // What was counted for a picture that is not finished must not appear in the next one.

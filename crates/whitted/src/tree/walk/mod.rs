@@ -43,6 +43,11 @@ impl<G: Goal> Kernel for Walk<'_, G> {
     #[inline(always)]
     fn run<S: Simd>(mut self, token: S) -> Counts {
         let mut counts = Counts::default();
+        if self.rays.len() == 1 {
+            self.record(token, Packets::default());
+            single::alone(token, &mut self, &mut counts);
+            return counts;
+        }
         let walked = self.packets(token, &mut counts);
         self.record(token, walked);
         let together = if self.way == Way::OneByOne { 1 } else { usize::MAX };

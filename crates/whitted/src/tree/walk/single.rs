@@ -38,6 +38,20 @@ struct Path {
     top: usize,
 }
 
+/// Follow the only ray there is, without the lists that many would need.
+#[inline(always)]
+pub(super) fn alone<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, counts: &mut Counts) {
+    let ray = walk.rays.node(0);
+    if !(ray.limit() >= ray.t_min()) {
+        return;
+    }
+    let mut stack = std::mem::take(&mut walk.lists.stack);
+    stack.reserve(walk.tree.depth(), 1);
+    let mut path = Path::new(walk, &mut stack, 0, Child::interior(0), 0);
+    while path.step(token, walk, &mut stack, counts) {}
+    walk.lists.stack = stack;
+}
+
 /// Follow the rays `ids`, at most [`WAYS`], through everything under `start`, a step of each in turn: while one waits for
 /// memory, the others work.
 #[inline(always)]
