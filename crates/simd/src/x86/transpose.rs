@@ -73,8 +73,37 @@ unsafe fn transpose_4x4_halves([a, b, c, d]: [__m256; 4]) -> [__m256; 4] {
 #[inline(always)]
 pub(super) unsafe fn transpose_16x4([a, b, c, d]: [[__m128; 4]; 4]) -> [__m512; 4] {
     // SAFETY: by this function's contract.
+    unsafe { transpose_4x4_quarters([quarters(a), quarters(b), quarters(c), quarters(d)]) }
+}
+
+/// The columns of four rows of sixteen, rounded toward zero: column `4q + i` is `[i][q]` of the result.
+///
+/// # Safety
+/// The CPU must have AVX-512F and DQ.
+#[inline(always)]
+pub(super) unsafe fn integers_16x4(rows: [__m512; 4]) -> [[[i64; 4]; 4]; 4] {
+    let mut columns = [[[0; 4]; 4]; 4];
+    // SAFETY: by this function's contract; every register is stored into half of an array of two registers' size.
     unsafe {
-        let (a, b, c, d) = (quarters(a), quarters(b), quarters(c), quarters(d));
+        let quarters = transpose_4x4_quarters(rows);
+        for i in 0..4 {
+            let (low, high) = (_mm512_castps512_ps256(quarters[i]), _mm512_extractf32x8_ps::<1>(quarters[i]));
+            let (low_to, high_to) = columns[i].split_at_mut(2);
+            _mm512_storeu_si512(low_to.as_mut_ptr().cast(), _mm512_cvttps_epi64(low));
+            _mm512_storeu_si512(high_to.as_mut_ptr().cast(), _mm512_cvttps_epi64(high));
+        }
+    }
+    columns
+}
+
+/// The columns of four rows of four, in each quarter of the registers for itself.
+///
+/// # Safety
+/// The CPU must have AVX-512F.
+#[inline(always)]
+unsafe fn transpose_4x4_quarters([a, b, c, d]: [__m512; 4]) -> [__m512; 4] {
+    // SAFETY: by this function's contract.
+    unsafe {
         let (ab_low, ab_high) = (_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b));
         let (cd_low, cd_high) = (_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d));
         [
@@ -84,33 +113,6 @@ pub(super) unsafe fn transpose_16x4([a, b, c, d]: [[__m128; 4]; 4]) -> [__m512; 
             _mm512_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
         ]
     }
-}
-
-/// The columns of four rows of sixteen, rounded toward zero: column `4q + i` is `[i][q]` of the result.
-///
-/// # Safety
-/// The CPU must have AVX-512F and DQ.
-#[inline(always)]
-pub(super) unsafe fn integers_16x4([a, b, c, d]: [__m512; 4]) -> [[[i64; 4]; 4]; 4] {
-    let mut columns = [[[0; 4]; 4]; 4];
-    // SAFETY: by this function's contract; every register is stored into half of an array of two registers' size.
-    unsafe {
-        let (ab_low, ab_high) = (_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b));
-        let (cd_low, cd_high) = (_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d));
-        let quarters = [
-            _mm512_shuffle_ps::<0b01_00_01_00>(ab_low, cd_low),
-            _mm512_shuffle_ps::<0b11_10_11_10>(ab_low, cd_low),
-            _mm512_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
-            _mm512_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
-        ];
-        for i in 0..4 {
-            let (low, high) = (_mm512_castps512_ps256(quarters[i]), _mm512_extractf32x8_ps::<1>(quarters[i]));
-            let (low_to, high_to) = columns[i].split_at_mut(2);
-            _mm512_storeu_si512(low_to.as_mut_ptr().cast(), _mm512_cvttps_epi64(low));
-            _mm512_storeu_si512(high_to.as_mut_ptr().cast(), _mm512_cvttps_epi64(high));
-        }
-    }
-    columns
 }
 
 /// Four quarters as one register.
