@@ -16,7 +16,7 @@ use super::document::{Fault, Key, Node, Span, Value};
 use crate::suggest;
 
 /// The value of the document as a `T`.
-pub(super) fn decode<'de, T: Deserialize<'de>>(document: &'de Node) -> Result<T, Fault> {
+pub(super) fn decode<'de, T: Deserialize<'de>>(document: &'de Node<'_>) -> Result<T, Fault> {
     T::deserialize(document)
 }
 
@@ -100,7 +100,7 @@ fn found_name(found: Unexpected<'_>) -> String {
     }
 }
 
-impl<'de> Deserializer<'de> for &'de Node {
+impl<'de> Deserializer<'de> for &'de Node<'_> {
     type Error = Fault;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
@@ -164,7 +164,7 @@ impl<'de> Deserializer<'de> for &'de Node {
 }
 
 /// Visit all items of a list: a visitor that wants fewer would leave the rest unseen.
-fn visit_list<'de, V: Visitor<'de>>(items: &'de [Node], visitor: V) -> Result<V::Value, Fault> {
+fn visit_list<'de, V: Visitor<'de>>(items: &'de [Node<'_>], visitor: V) -> Result<V::Value, Fault> {
     let mut rest = Items(items.iter());
     let value = visitor.visit_seq(&mut rest)?;
     let unseen = rest.0.len();
@@ -176,9 +176,9 @@ fn visit_list<'de, V: Visitor<'de>>(items: &'de [Node], visitor: V) -> Result<V:
 }
 
 /// The items of a list.
-struct Items<'de>(std::slice::Iter<'de, Node>);
+struct Items<'de, 't>(std::slice::Iter<'de, Node<'t>>);
 
-impl<'de> SeqAccess<'de> for &mut Items<'de> {
+impl<'de> SeqAccess<'de> for &mut Items<'de, '_> {
     type Error = Fault;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Fault> {
@@ -191,24 +191,24 @@ impl<'de> SeqAccess<'de> for &mut Items<'de> {
 }
 
 /// The entries of a table, but for one key.
-struct Entries<'de> {
-    rest: std::slice::Iter<'de, (Key, Node)>,
+struct Entries<'de, 't> {
+    rest: std::slice::Iter<'de, (Key<'t>, Node<'t>)>,
     without: Option<&'static str>,
-    value: Option<&'de Node>,
+    value: Option<&'de Node<'t>>,
 }
 
-impl<'de> Entries<'de> {
-    fn all(entries: &'de [(Key, Node)]) -> Self {
+impl<'de, 't> Entries<'de, 't> {
+    fn all(entries: &'de [(Key<'t>, Node<'t>)]) -> Self {
         Self { rest: entries.iter(), without: None, value: None }
     }
 }
 
-impl<'de> MapAccess<'de> for Entries<'de> {
+impl<'de> MapAccess<'de> for Entries<'de, '_> {
     type Error = Fault;
 
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Fault> {
         let without = self.without;
-        let Some((key, value)) = self.rest.find(|(key, _)| Some(key.name.as_str()) != without) else {
+        let Some((key, value)) = self.rest.find(|(key, _)| Some(&*key.name) != without) else {
             return Ok(None);
         };
         self.value = Some(value);
@@ -221,7 +221,7 @@ impl<'de> MapAccess<'de> for Entries<'de> {
     }
 }
 
-impl<'de> Deserializer<'de> for &'de Key {
+impl<'de> Deserializer<'de> for &'de Key<'_> {
     type Error = Fault;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
@@ -244,13 +244,13 @@ impl<'de> Deserializer<'de> for &'de Key {
 }
 
 /// The variant of an enum: its name, and the table it was found in, if it is one.
-struct Chosen<'de> {
+struct Chosen<'de, 't> {
     word: &'de str,
     span: &'de Span,
-    entries: Option<&'de [(Key, Node)]>,
+    entries: Option<&'de [(Key<'t>, Node<'t>)]>,
 }
 
-impl<'de> EnumAccess<'de> for Chosen<'de> {
+impl<'de> EnumAccess<'de> for Chosen<'de, '_> {
     type Error = Fault;
     type Variant = Self;
 
@@ -261,7 +261,7 @@ impl<'de> EnumAccess<'de> for Chosen<'de> {
     }
 }
 
-impl<'de> VariantAccess<'de> for Chosen<'de> {
+impl<'de> VariantAccess<'de> for Chosen<'de, '_> {
     type Error = Fault;
 
     fn unit_variant(self) -> Result<(), Fault> {

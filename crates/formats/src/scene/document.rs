@@ -1,35 +1,36 @@
 //! A document of nested tables, lists and values, each with its place in the text: what TOML and JSON have in common.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// A range of bytes of the text.
 pub(super) type Span = Range<usize>;
 
-/// A value and where it stands.
+/// A value of the text `'t` and where it stands.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Node {
+pub(super) struct Node<'t> {
     pub(super) span: Span,
-    pub(super) value: Value,
+    pub(super) value: Value<'t>,
 }
 
 /// What a document is made of.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Value {
+pub(super) enum Value<'t> {
     Null,
     Bool(bool),
     Integer(i64),
     Float(f64),
-    Text(String),
-    List(Vec<Node>),
+    Text(Cow<'t, str>),
+    List(Vec<Node<'t>>),
     /// Keys in the order of the text, no two alike.
-    Table(Vec<(Key, Node)>),
+    Table(Vec<(Key<'t>, Node<'t>)>),
 }
 
 /// A key of a table and where it stands.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Key {
+pub(super) struct Key<'t> {
     pub(super) span: Span,
-    pub(super) name: String,
+    pub(super) name: Cow<'t, str>,
 }
 
 /// What is wrong with a document, and where if that is known.
@@ -60,12 +61,25 @@ impl Fault {
     }
 }
 
-impl Node {
-    /// The value of a key, if this is a table that has it.
-    pub(super) fn get(&self, name: &str) -> Option<&Self> {
+impl<'t> Node<'t> {
+    /// The entries, if this is a table.
+    pub(super) fn entries(&self) -> Option<&[(Key<'t>, Self)]> {
         match &self.value {
-            Value::Table(entries) => entries.iter().find(|(key, _)| key.name == name).map(|(_, node)| node),
+            Value::Table(entries) => Some(entries),
             _ => None,
         }
+    }
+
+    /// As [`entries`](Self::entries), to be changed.
+    pub(super) fn entries_mut(&mut self) -> Option<&mut Vec<(Key<'t>, Self)>> {
+        match &mut self.value {
+            Value::Table(entries) => Some(entries),
+            _ => None,
+        }
+    }
+
+    /// The value of a key, if this is a table that has it.
+    pub(super) fn get(&self, name: &str) -> Option<&Self> {
+        self.entries()?.iter().find(|(key, _)| key.name == name).map(|(_, node)| node)
     }
 }

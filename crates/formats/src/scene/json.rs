@@ -13,13 +13,13 @@ use serde_json::value::RawValue;
 use super::document::{DEEPEST, Fault, Key, Node, Span, Value};
 
 /// Parse a text.
-pub(super) fn parse(text: &str) -> Result<Node, Fault> {
+pub(super) fn parse(text: &str) -> Result<Node<'_>, Fault> {
     let raw: &RawValue =
         serde_json::from_str(text).map_err(|e| Fault { span: Some(place(text, &e)), what: message(&e), hint: None })?;
     convert(text, raw, 0)
 }
 
-fn convert(text: &str, raw: &RawValue, depth: usize) -> Result<Node, Fault> {
+fn convert<'t>(text: &'t str, raw: &'t RawValue, depth: usize) -> Result<Node<'t>, Fault> {
     let raw = raw.get();
     let span = span_of(text, raw);
     if depth > DEEPEST {
@@ -46,7 +46,7 @@ fn convert(text: &str, raw: &RawValue, depth: usize) -> Result<Node, Fault> {
     Ok(Node { span, value })
 }
 
-fn convert_number(raw: &str, span: &Span) -> Result<Value, Fault> {
+fn convert_number(raw: &str, span: &Span) -> Result<Value<'static>, Fault> {
     if let Ok(integer) = raw.parse() {
         return Ok(Value::Integer(integer));
     }
@@ -56,7 +56,11 @@ fn convert_number(raw: &str, span: &Span) -> Result<Value, Fault> {
     }
 }
 
-fn convert_entries(text: &str, entries: Vec<(Name<'_>, &RawValue)>, depth: usize) -> Result<Value, Fault> {
+fn convert_entries<'t>(
+    text: &'t str,
+    entries: Vec<(Name<'t>, &'t RawValue)>,
+    depth: usize,
+) -> Result<Value<'t>, Fault> {
     let mut seen = HashSet::new();
     let mut table = Vec::with_capacity(entries.len());
     for (Name(name), raw) in entries {
@@ -66,7 +70,7 @@ fn convert_entries(text: &str, entries: Vec<(Name<'_>, &RawValue)>, depth: usize
         if !seen.insert(name.clone()) {
             return Err(Fault::new(span, format!("the key \"{name}\" is given twice")));
         }
-        table.push((Key { span, name: name.into_owned() }, node));
+        table.push((Key { span, name }, node));
     }
     Ok(Value::Table(table))
 }

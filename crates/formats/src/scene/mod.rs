@@ -1,7 +1,7 @@
 //! The native scene format, version 1, as TOML and as JSON: `docs/scene-format.md`.
 //!
 //! A text becomes a [`document`] in which every value knows its place; the document becomes [`sections`] by serde, and
-//! the sections a scene. Each step tells its faults at their place.
+//! the sections a scene. Each step tells its faults at their place. TOML without faults takes a [`quick`] way.
 
 mod build;
 mod color;
@@ -9,6 +9,7 @@ mod decode;
 mod document;
 mod json;
 mod loose;
+mod quick;
 #[cfg(feature = "schema")]
 mod schema;
 mod sections;
@@ -31,31 +32,37 @@ use sections::SceneFile;
 
 /// Read a scene written in TOML.
 pub(crate) fn read_toml(source: Source<'_>, context: &mut Context<'_>) -> Result<Scene, Error> {
-    read(source, context, toml::parse)
+    build::build(&decode_toml(&source)?, source, context)
 }
 
 /// Read a scene written in JSON.
 pub(crate) fn read_json(source: Source<'_>, context: &mut Context<'_>) -> Result<Scene, Error> {
-    read(source, context, json::parse)
-}
-
-fn read(source: Source<'_>, context: &mut Context<'_>, parse: fn(&str) -> Result<Node, Fault>) -> Result<Scene, Error> {
-    let file = decode(&source, parse)?;
-    build::build(&file, source, context)
+    build::build(&decode(&source, json::parse)?, source, context)
 }
 
 /// What a scene written in TOML says about cameras, lights, materials and the picture; nothing that it names is opened.
 fn look_of(source: Source<'_>) -> Result<Scene, Error> {
-    build::look(&decode(&source, toml::parse)?, source)
+    build::look(&decode_toml(&source)?, source)
 }
 
-fn decode(source: &Source<'_>, parse: fn(&str) -> Result<Node, Fault>) -> Result<SceneFile, Error> {
-    let mut document = parse(utf8(source)?).map_err(|fault| error(source, fault))?;
-    sections::name_cameras(&mut document);
+fn decode_toml(source: &Source<'_>) -> Result<SceneFile, Error> {
+    match quick::read(utf8(source)?) {
+        Some(file) => Ok(file),
+        None => decode(source, toml::parse),
+    }
+}
+
+fn decode(source: &Source<'_>, parse: fn(&str) -> Result<Node<'_>, Fault>) -> Result<SceneFile, Error> {
+    let document = parse(utf8(source)?).map_err(|fault| error(source, fault))?;
     if document.get("version").is_none() {
         return Err(source.error_whole("the key \"version\" is missing").hint("a scene begins with version = 1"));
     }
-    decode::decode(&document).map_err(|fault| error(source, fault))
+    sections_of(document).map_err(|fault| error(source, fault))
+}
+
+fn sections_of(mut document: Node<'_>) -> Result<SceneFile, Fault> {
+    sections::name_cameras(&mut document);
+    decode::decode(&document)
 }
 
 /// The error about a fault of the text `source`.

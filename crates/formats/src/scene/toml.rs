@@ -1,12 +1,12 @@
 //! TOML as a document.
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
 use super::document::{DEEPEST, Fault, Key, Node, Value};
 
 /// Parse a text.
-pub(super) fn parse(text: &str) -> Result<Node, Fault> {
+pub(super) fn parse(text: &str) -> Result<Node<'_>, Fault> {
     let table = DeTable::parse(text).map_err(|e| Fault {
         span: e.span(),
         what: e.message().trim().replace('\n', "; "),
@@ -16,13 +16,19 @@ pub(super) fn parse(text: &str) -> Result<Node, Fault> {
     Ok(Node { span: 0..0, value })
 }
 
-fn convert(node: &Spanned<DeValue<'_>>, depth: usize) -> Result<Node, Fault> {
+/// The value of a lone number, text in quotes, true or false; none if that is not all there is, or wrong.
+pub(super) fn scalar(text: &str) -> Option<Value<'_>> {
+    let value = convert(&DeValue::parse(text).ok()?, 0).ok()?.value;
+    (!matches!(value, Value::List(_) | Value::Table(_))).then_some(value)
+}
+
+fn convert<'t>(node: &Spanned<DeValue<'t>>, depth: usize) -> Result<Node<'t>, Fault> {
     let span = node.span();
     if depth > DEEPEST {
         return Err(Fault::new(span, format!("lists and tables are nested deeper than {DEEPEST}")));
     }
     let value = match node.get_ref() {
-        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::String(text) => Value::Text(text.clone()),
         DeValue::Boolean(value) => Value::Bool(*value),
         DeValue::Integer(integer) => {
             let value = i64::from_str_radix(integer.as_str(), integer.radix());
@@ -41,9 +47,9 @@ fn convert(node: &Spanned<DeValue<'_>>, depth: usize) -> Result<Node, Fault> {
     Ok(Node { span, value })
 }
 
-fn convert_table(table: &DeTable<'_>, depth: usize) -> Result<Value, Fault> {
-    let entry = |(key, value): (&Spanned<_>, &Spanned<DeValue<'_>>)| {
-        let key = Key { span: key.span(), name: AsRef::<str>::as_ref(key.get_ref()).to_owned() };
+fn convert_table<'t>(table: &DeTable<'t>, depth: usize) -> Result<Value<'t>, Fault> {
+    let entry = |(key, value): (&Spanned<DeString<'t>>, &Spanned<DeValue<'t>>)| {
+        let key = Key { span: key.span(), name: key.get_ref().clone() };
         Ok((key, convert(value, depth)?))
     };
     let mut entries = table.iter().map(entry).collect::<Result<Vec<_>, _>>()?;

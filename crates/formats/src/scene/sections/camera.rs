@@ -40,11 +40,11 @@ impl CameraSection {
 
 /// Give a camera without a name one, so that `camera` is always a table of names: a single camera is known by keys whose
 /// values are no tables.
-pub(in crate::scene) fn name_cameras(document: &mut Node) {
+pub(in crate::scene) fn name_cameras(document: &mut Node<'_>) {
     let Value::Table(sections) = &mut document.value else { return };
     let Some((key, camera)) = sections.iter_mut().find(|(key, _)| key.name == "camera") else { return };
     if is_single_camera(camera) {
-        let name = Key { span: key.span.clone(), name: UNNAMED.to_owned() };
+        let name = Key { span: key.span.clone(), name: UNNAMED.into() };
         let single = std::mem::replace(&mut camera.value, Value::Null);
         let single = Node { span: camera.span.clone(), value: single };
         camera.value = Value::Table(vec![(name, single)]);
@@ -52,7 +52,7 @@ pub(in crate::scene) fn name_cameras(document: &mut Node) {
 }
 
 /// Whether the value of `camera` is a single camera without a name.
-pub(in crate::scene) fn is_single_camera(camera: &Node) -> bool {
+pub(in crate::scene) fn is_single_camera(camera: &Node<'_>) -> bool {
     let Value::Table(entries) = &camera.value else { return false };
     entries.is_empty() || !entries.iter().all(|(_, node)| matches!(node.value, Value::Table(_)))
 }

@@ -13,7 +13,7 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
-use super::decode::At;
+use super::decode::{At, decode};
 use super::document::{Key, Node, Value};
 use super::values::Count;
 
@@ -71,6 +71,45 @@ pub(crate) struct SceneFile {
     /// Many spheres from a few numbers.
     #[serde(default)]
     pub(super) generate: Vec<At<GenerateSection>>,
+}
+
+/// The lists of a scene file, to be filled item by item.
+macro_rules! lists {
+    ($($key:literal $field:ident: $section:ty,)*) => {
+        /// Sections as they are read, of all the keys of [`SceneFile`] that have lists.
+        #[derive(Debug, Default)]
+        pub(super) struct Lists {
+            $($field: Vec<$section>,)*
+        }
+
+        impl Lists {
+            /// Append an item to the list of the key `key`. None if the item is wrong, or there is no such list.
+            pub(super) fn push(&mut self, key: &str, item: &Node<'_>) -> Option<()> {
+                match key {
+                    $($key => self.$field.push(decode(item).ok()?),)*
+                    _ => return None,
+                }
+                Some(())
+            }
+
+            /// Make these the lists of `file`.
+            pub(super) fn move_to(self, file: &mut SceneFile) {
+                $(file.$field = self.$field;)*
+            }
+        }
+    };
+}
+
+lists! {
+    "light" light: At<LightSection>,
+    "sphere" sphere: SphereSection,
+    "plane" plane: PlaneSection,
+    "disc" disc: At<DiscSection>,
+    "box" boxes: At<BoxSection>,
+    "cylinder" cylinder: At<CylinderSection>,
+    "cone" cone: At<ConeSection>,
+    "mesh" mesh: MeshSection,
+    "generate" generate: At<GenerateSection>,
 }
 
 /// A table of named things, in the order of the text.

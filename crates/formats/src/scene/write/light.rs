@@ -59,7 +59,7 @@ fn likeness(a: &Light, b: &Light) -> u32 {
 }
 
 /// Put everything in which the lights `new` differ from `old`, those of the text, into the text.
-pub(super) fn lights(patch: &mut Patch, document: &Node, old: &[Light], new: &[Light]) -> Result<(), Fault> {
+pub(super) fn lights(patch: &mut Patch, document: &Node<'_>, old: &[Light], new: &[Light]) -> Result<(), Fault> {
     let list = document.get("light");
     let tables = list.map_or(&[][..], |node| if let Value::List(items) = &node.value { items } else { &[] });
     let origins = origins(old, new);
@@ -107,7 +107,7 @@ fn falloff(inverse_square: bool) -> String {
 }
 
 /// Change the section of a light.
-fn change(patch: &mut Patch, table: &Node, old: &Light, new: &Light) -> Result<(), Fault> {
+fn change(patch: &mut Patch, table: &Node<'_>, old: &Light, new: &Light) -> Result<(), Fault> {
     set_all(patch, table, place(table, &old.kind, &new.kind))?;
     if old.color != new.color {
         brightness(patch, table, old.color, new.color)?;
@@ -116,7 +116,7 @@ fn change(patch: &mut Patch, table: &Node, old: &Light, new: &Light) -> Result<(
 }
 
 /// The keys of a light's place where `new` differs from `old`, which is of the same kind.
-fn place(table: &Node, old: &LightKind, new: &LightKind) -> Vec<Entry> {
+fn place(table: &Node<'_>, old: &LightKind, new: &LightKind) -> Vec<Entry> {
     match (old, new) {
         (LightKind::Point { position: a }, LightKind::Point { position: b }) => {
             vec![("point", changed(a, b, |p| *p, point))]
@@ -142,7 +142,7 @@ fn place(table: &Node, old: &LightKind, new: &LightKind) -> Vec<Entry> {
 }
 
 /// Change the colour times the intensity of a light: one of the two alone if that gives the colour to the bit.
-fn brightness(patch: &mut Patch, table: &Node, old: Vec3f, new: Vec3f) -> Result<(), Fault> {
+fn brightness(patch: &mut Patch, table: &Node<'_>, old: Vec3f, new: Vec3f) -> Result<(), Fault> {
     let intensity = match table.get("intensity").map(|node| &node.value) {
         Some(Value::Float(intensity)) => *intensity as f32,
         Some(Value::Integer(intensity)) => *intensity as f32,

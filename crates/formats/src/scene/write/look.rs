@@ -20,7 +20,11 @@ pub(super) fn changed<S, T: PartialEq>(
 }
 
 /// Set all entries that have a new value.
-pub(super) fn set_all(patch: &mut Patch, table: &Node, entries: impl IntoIterator<Item = Entry>) -> Result<(), Fault> {
+pub(super) fn set_all(
+    patch: &mut Patch,
+    table: &Node<'_>,
+    entries: impl IntoIterator<Item = Entry>,
+) -> Result<(), Fault> {
     entries.into_iter().try_for_each(|(key, value)| match value {
         Some(value) => patch.set(table, key, value),
         None => Ok(()),

@@ -11,7 +11,7 @@ use crate::scene::sections::plain_ior;
 use crate::scene::toml;
 
 /// Change the section of a material.
-pub(super) fn material(patch: &mut Patch, table: &Node, old: &Material, new: &Material) -> Result<(), Fault> {
+pub(super) fn material(patch: &mut Patch, table: &Node<'_>, old: &Material, new: &Material) -> Result<(), Fault> {
     set_all(
         patch,
         table,
@@ -49,13 +49,13 @@ pub(super) fn append(patch: &mut Patch, name: &str, material: &Material) -> Resu
 const EMPTY: &str = "[m]";
 
 /// Left out, the index follows the kind of reflection.
-fn ior(table: &Node, old: &Material, new: &Material) -> Option<String> {
+fn ior(table: &Node<'_>, old: &Material, new: &Material) -> Option<String> {
     let implied = table.get("ior").is_none();
     let before = if implied { plain_ior(new.reflectance) } else { old.ior };
     (before != new.ior).then(|| single(new.ior))
 }
 
-fn texture(patch: &mut Patch, table: &Node, new: Texture) -> Result<(), Fault> {
+fn texture(patch: &mut Patch, table: &Node<'_>, new: Texture) -> Result<(), Fault> {
     match (new, table.get("color").filter(|node| is_table(node))) {
         (Texture::Color(flat), _) => patch.set(table, "color", color(flat)),
         (Texture::Checker { even, odd, size }, Some(checker)) => {
@@ -69,7 +69,7 @@ fn texture(patch: &mut Patch, table: &Node, new: Texture) -> Result<(), Fault> {
     }
 }
 
-fn specular(patch: &mut Patch, table: &Node, old: &Material, new: &Material) -> Result<(), Fault> {
+fn specular(patch: &mut Patch, table: &Node<'_>, old: &Material, new: &Material) -> Result<(), Fault> {
     let model = |model| match model {
         SpecularModel::Phong => word("phong"),
         SpecularModel::Blinn => word("blinn"),
@@ -88,7 +88,7 @@ fn specular(patch: &mut Patch, table: &Node, old: &Material, new: &Material) -> 
     compound(patch, table, "specular", entries, || if is_plain { strength(new.specular) } else { whole() })
 }
 
-fn reflect(patch: &mut Patch, table: &Node, old: &Material, new: &Material) -> Result<(), Fault> {
+fn reflect(patch: &mut Patch, table: &Node<'_>, old: &Material, new: &Material) -> Result<(), Fault> {
     let model = |reflectance| match reflectance {
         Reflectance::Constant => word("constant"),
         Reflectance::Fresnel => word("fresnel"),
@@ -108,7 +108,7 @@ fn reflect(patch: &mut Patch, table: &Node, old: &Material, new: &Material) -> R
 /// Change a value that may be a table: its entries if it is one, else all of it.
 fn compound<const N: usize>(
     patch: &mut Patch,
-    table: &Node,
+    table: &Node<'_>,
     key: &str,
     entries: [Entry; N],
     whole: impl Fn() -> String,
@@ -122,6 +122,6 @@ fn compound<const N: usize>(
     }
 }
 
-fn is_table(node: &Node) -> bool {
+fn is_table(node: &Node<'_>) -> bool {
     matches!(node.value, Value::Table(_))
 }

@@ -41,7 +41,7 @@ fn camera_header(name: &str) -> String {
 pub fn write_back(file: &Path, text: &str, old: &Scene, new: &Scene) -> Result<String, Error> {
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let source = Source { file, bytes: body.as_bytes() };
-    let stated = super::decode(&source, toml::parse)?;
+    let stated = super::decode_toml(&source)?;
     let before = build::look(&stated, source)?;
     let wanted = wanted(&before, &build::implied_materials(&stated), old, new)
         .map_err(|what| Error::new(ErrorKind::Unsupported, file, what))?;
@@ -148,7 +148,7 @@ fn cameras(wanted: &mut Scene, old: &Scene, new: &Scene) -> Result<(), String> {
 }
 
 /// Put everything in which `wanted` differs from `before` into the text.
-fn write(patch: &mut Patch, document: &Node, before: &Scene, wanted: &Scene) -> Result<(), Fault> {
+fn write(patch: &mut Patch, document: &Node<'_>, before: &Scene, wanted: &Scene) -> Result<(), Fault> {
     let render = look::render(before, wanted);
     match document.get("render") {
         Some(table) => look::set_all(patch, table, render)?,
@@ -174,7 +174,7 @@ fn write(patch: &mut Patch, document: &Node, before: &Scene, wanted: &Scene) -> 
 
 fn write_cameras(
     patch: &mut Patch,
-    document: &Node,
+    document: &Node<'_>,
     before: &[NamedCamera],
     wanted: &[NamedCamera],
 ) -> Result<(), Fault> {

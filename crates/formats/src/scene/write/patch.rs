@@ -45,7 +45,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Give a key of a table another value.
-    pub(super) fn set(&mut self, table: &Node, key: &str, value: String) -> Result<(), Fault> {
+    pub(super) fn set(&mut self, table: &Node<'_>, key: &str, value: String) -> Result<(), Fault> {
         match table.get(key) {
             None => self.insert(table, key, &value),
             Some(old) if matches!(self.form(old), Some(Form::Header | Form::Implied)) => {
@@ -61,7 +61,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Replace one value by another.
-    pub(super) fn replace(&mut self, node: &Node, value: String) {
+    pub(super) fn replace(&mut self, node: &Node<'_>, value: String) {
         self.splices.push((node.span.clone(), value));
     }
 
@@ -73,7 +73,12 @@ impl<'a> Patch<'a> {
     }
 
     /// Insert a section below another one.
-    pub(super) fn insert_after(&mut self, table: &Node, header: &str, entries: &[(&str, String)]) -> Result<(), Fault> {
+    pub(super) fn insert_after(
+        &mut self,
+        table: &Node<'_>,
+        header: &str,
+        entries: &[(&str, String)],
+    ) -> Result<(), Fault> {
         let end = self.lines(table)?.end;
         let newline = self.newline();
         let section = self.section(header, entries);
@@ -84,7 +89,7 @@ impl<'a> Patch<'a> {
     /// Insert a section above another one.
     pub(super) fn insert_before(
         &mut self,
-        table: &Node,
+        table: &Node<'_>,
         header: &str,
         entries: &[(&str, String)],
     ) -> Result<(), Fault> {
@@ -94,7 +99,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Remove a section: all lines from its header to its last key, and one that is blank below.
-    pub(super) fn remove(&mut self, table: &Node) -> Result<(), Fault> {
+    pub(super) fn remove(&mut self, table: &Node<'_>) -> Result<(), Fault> {
         let Span { start, mut end } = self.lines(table)?;
         for _ in 0..2 {
             let next = self.text[end..].strip_prefix("\r\n").or_else(|| self.text[end..].strip_prefix('\n'));
@@ -105,7 +110,7 @@ impl<'a> Patch<'a> {
     }
 
     /// The lines from the header of a section to its last key, without the last line break.
-    fn lines(&self, table: &Node) -> Result<Span, Fault> {
+    fn lines(&self, table: &Node<'_>) -> Result<Span, Fault> {
         let (Some(Form::Header), Value::Table(entries)) = (self.form(table), &table.value) else {
             let what = "this is not a section with a header of its own: nothing is added or removed beside it";
             return Err(Fault::new(table.span.clone(), what));
@@ -122,7 +127,7 @@ impl<'a> Patch<'a> {
     }
 
     /// How a node is written if it is a table.
-    fn form(&self, node: &Node) -> Option<Form> {
+    fn form(&self, node: &Node<'_>) -> Option<Form> {
         let Value::Table(_) = node.value else { return None };
         Some(match self.text[node.span.clone()].as_bytes().first() {
             Some(b'[') => Form::Header,
@@ -131,7 +136,7 @@ impl<'a> Patch<'a> {
         })
     }
 
-    fn insert(&mut self, table: &Node, key: &str, value: &str) -> Result<(), Fault> {
+    fn insert(&mut self, table: &Node<'_>, key: &str, value: &str) -> Result<(), Fault> {
         let entry = format!("{} = {value}", literal::key(key));
         // Sections below the table come after its own keys.
         let entries: &[_] = if let Value::Table(entries) = &table.value { entries } else { &[] };
@@ -165,7 +170,7 @@ impl<'a> Patch<'a> {
     }
 
     /// True for `[table.node]` and `[[table.node]]`.
-    fn is_section(&self, node: &Node) -> bool {
+    fn is_section(&self, node: &Node<'_>) -> bool {
         match &node.value {
             Value::List(items) => items.first().is_some_and(|item| matches!(self.form(item), Some(Form::Header))),
             Value::Table(entries) => match self.form(node) {
@@ -178,7 +183,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Where what is written of a node ends.
-    fn end(&self, node: &Node) -> usize {
+    fn end(&self, node: &Node<'_>) -> usize {
         match (&node.value, self.form(node)) {
             (Value::Table(entries), Some(Form::Implied)) => {
                 entries.iter().map(|(_, node)| self.end(node)).max().unwrap_or(node.span.end)
@@ -218,8 +223,9 @@ mod tests {
         let mut patch = Patch::new(text);
         patch.set(table, "b", "7".to_owned())?;
         let text = patch.apply();
-        let number = |node: &Node| node.get(a).and_then(|a| a.get("b")).map(|b| b.value.clone());
-        assert_eq!(number(&parse(&text).unwrap()), Some(Value::Integer(7)), "{text}");
+        let document = parse(&text).unwrap();
+        let number = document.get(a).and_then(|a| a.get("b")).map(|b| &b.value);
+        assert_eq!(number, Some(&Value::Integer(7)), "{text}");
         Ok(text)
     }
 

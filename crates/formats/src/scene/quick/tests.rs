@@ -1,0 +1,193 @@
+//! The quick way answers as the oracle does, or not at all; and it does answer for what scenes consist of.
+
+use whitted::math::SplitMix64;
+
+use crate::scene::{quick, sections_of, toml};
+
+/// What the oracle reads, places included; none if something is wrong.
+fn oracle(text: &str) -> Option<String> {
+    let document = toml::parse(text).ok()?;
+    document.get("version")?;
+    sections_of(document).ok().map(|file| format!("{file:?}"))
+}
+
+fn quick(text: &str) -> Option<String> {
+    quick::read(text).map(|file| format!("{file:?}"))
+}
+
+/// A scene that uses most of what TOML allows, in a way that is not left to the oracle.
+const SAMPLE: &str = "# A comment: [[sphere]]\nversion = 1\nrender.exposure = +1.5e+0\nrender.\"depth\" = 3\n\
+    plane = [{ point = [0, 0, 0] }, { point = [0, 1, 0], normal = [0, -1, 0] }, ]\r\n\r\n\t[camera . 'a b']\n\
+    eye = [ 0.5e-1, -0, 5_0, # five\n ]\nlook_at = [\n 0, 0x10\n, 1E2] # there\n[camera.b]\neye=[1,2,3]\n\
+    look_at=[0,0,0]\n[[light]]\npoint = [1, -2.5, 3]\nfalloff = \"inverse-square\"\n[material.glass]\n\
+    color = { checker = [[1, 1, 1], \"#aa00ff\"], size = 2 }\ntransmit = 0.9\nior = 1.5\n[material.\"g\"]\n\
+    color = \"\\u0023ffffff\"\n[material.g.specular]\nexponent = 9\n[[sphere]]\ncenter = [0, 0.5, 0]\nradius = 0.5e0\n\
+    material = \"glass\"\n[[sphere]]\nradius = 2\ncenter = [1.25, 0, 7]\nmaterial = '''g'''\n[[cylinder]]\n\
+    base = [0, 0, 0]\napex = [0, 1, 0]\nradius = 1\ncapped = false\n[[cone]]\nbase = [0, 0, 0]\n\
+    apex = [0, 1, 0]\nbase_radius = 1\n[[disc]]\ncenter = [0, 0, 0]\nradius = 1\n[[box]]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[material.late]\ncolor = \"#ffffff\"\n[[mesh]]\n\
+    file = \"\"\"a\\\n  .ply\"\"\"\n[mesh.rotate]\naxis = [0, 0, 1]\nangle = 90\n[[sphere]]\ncenter = [0, 0, 0]\n\
+    radius = 1\n[[generate]]\nkind = \"grid\"\nper_edge = 2\nmaterials = [\"g\", 'glass']";
+
+/// Texts that fit between the parts of others, and hurt.
+const PIECES: [&str; 40] = [
+    "\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n",
+    "\n[material.x]\n",
+    "\n[material]\n",
+    "\n[material.x.specular]\nexponent = 3\n",
+    "\n[camera]\neye = [0, 0, 1]\nlook_at = [0, 0, 0]\n",
+    "\n[camera.y]\neye = [0, 0, 1]\nlook_at = [0, 0, 0]\n",
+    "\n[render]\n",
+    "\n[mesh.rotate]\naxis = [1, 0, 0]\nangle = 1\n",
+    "\n[sphere]\n",
+    "\n[sphere.x]\n",
+    "\n[[material]]\n",
+    "\n[[light]]\npoint.x = 1\n",
+    "\nmaterial.x.color = \"#ffffff\"\n",
+    "\nmaterial.x = {}\n",
+    "\nsphere = []\n",
+    "\ncolor = \"#ffffff\"\n",
+    "\nmaterial = \"g\"\n",
+    "\nversion = 1\n",
+    "\n# é\u{7f}\n",
+    "\n# é [[sphere]]\r\n",
+    "'''",
+    "\"\"\"",
+    "\"",
+    "'",
+    "\\",
+    "[",
+    "]",
+    "{",
+    "}",
+    ",",
+    "=",
+    ".",
+    "\r",
+    "\n",
+    " ",
+    "0",
+    "1e999",
+    "_",
+    "inf",
+    "1979-05-27 07:32:00",
+];
+
+/// Checks that the quick way says nothing else than the oracle. Tells whether each of them has an answer.
+#[track_caller]
+fn compare(text: &str) -> (bool, bool) {
+    let (quick, oracle) = (quick(text), oracle(text));
+    if quick.is_some() {
+        assert_eq!(quick, oracle, "{text}");
+    }
+    (quick.is_some(), oracle.is_some())
+}
+
+fn at_any_character(text: &str, random: &mut SplitMix64) -> usize {
+    let at = random.below(text.len() as u32 + 1) as usize;
+    (0..=at).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
+}
+
+#[test]
+fn what_scenes_consist_of_is_read() {
+    assert_eq!(compare(SAMPLE), (true, true));
+    assert_eq!(compare(&SAMPLE.replace("\r\n", "\n").replace('\n', "\r\n")), (true, true));
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
+    let scenes = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let scenes = scenes.filter(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    let read = scenes.map(|path| std::fs::read_to_string(path).unwrap()).map(|text| compare(&text));
+    assert!(read.inspect(|read| assert_eq!(*read, (true, true))).count() >= 10);
+}
+
+#[test]
+fn what_is_unusual_is_left_to_the_oracle() {
+    let camera = "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+    for unusual in [
+        "[material.a]\n[render]\n[material.a.specular]\nexponent = 9\n",
+        "[[mesh]]\nfile = \"a\"\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n[mesh.rotate]\naxis = [1, 0, 0]\nangle = 9\n",
+        "[material.\"\\u0061\"]\n",
+    ] {
+        assert_eq!(compare(&format!("version = 1\n{camera}{unusual}")), (false, true), "{unusual}");
+    }
+}
+
+#[test]
+fn what_is_wrong_is_left_to_the_oracle() {
+    let entries = [
+        "a = 1",
+        "seed = 01",
+        "seed = 1_",
+        "seed = 1__0",
+        "seed = 1.",
+        "seed = .5",
+        "seed = 1e",
+        "seed = 1 2",
+        "seed = 1979-05-27",
+        "seed = 9223372036854775808",
+        "seed = [1, , 2]",
+        "seed = [,]",
+        "seed = {,}",
+        "seed = { a = 1, a = 2 }",
+        "seed = \"a\nb\"",
+        "seed = \"\\q\"",
+        "seed =\n1",
+        "seed\n= 1",
+        "seed = 1\rsize = 2",
+        "seed = 1 # \u{1}",
+        "seed = 1\nseed = 2",
+        "size = [1, 2] size = 3",
+        "\"\"\"seed\"\"\" = 1",
+        "[render]",
+        "[[render]]",
+        "[render ]]",
+        "[[sphere] ]\ncenter = [0, 0, 0]\nradius = 1",
+        "[]",
+        "[a",
+        "aa.x = 1\naa = 2",
+        "background.up = 1\nseed = 1\nbackground.up = 2",
+    ];
+    for entry in entries {
+        let text = format!("version = 1\n[render]\n{entry}\n");
+        assert_eq!(compare(&text), (false, false), "{entry}");
+    }
+    assert_eq!(compare("[render]\n"), (false, false));
+    let nested = format!("version = 1\nsphere = {}", "[".repeat(100_000));
+    assert_eq!(quick(&nested), None);
+}
+
+#[test]
+fn random_changes_make_no_difference() {
+    const RUNS: usize = 20_000;
+    let mut random = SplitMix64::new(7);
+    let (mut understood, mut right) = (0, 0);
+    for _ in 0..RUNS {
+        let mut text = SAMPLE.to_owned();
+        for _ in 0..=random.below(3) {
+            let at = at_any_character(&text, &mut random);
+            let end = at_any_character(&text, &mut random).clamp(at, text.len().min(at + 8));
+            let end = (end..).find(|&end| text.is_char_boundary(end)).unwrap_or(at);
+            match random.below(3) {
+                0 => text.replace_range(at..end, ""),
+                _ => text.insert_str(at, PIECES[random.below(PIECES.len() as u32) as usize]),
+            }
+        }
+        let (is_understood, is_right) = compare(&text);
+        understood += usize::from(is_understood);
+        right += usize::from(is_right);
+    }
+    println!("{understood} understood of {right} right ones of {RUNS}");
+    assert!(right > RUNS / 20 && understood > right * 4 / 5);
+}
+
+#[test]
+fn random_orders_make_no_difference() {
+    const RUNS: usize = 20_000;
+    let mut random = SplitMix64::new(8);
+    let mut right = 0;
+    for _ in 0..RUNS {
+        let mut text = "version = 1\n".to_owned();
+        (0..random.below(6)).for_each(|_| text.push_str(PIECES[random.below(20) as usize]));
+        right += usize::from(compare(&text).1);
+    }
+    println!("{right} right ones of {RUNS}");
+    assert!(right > RUNS / 20);
+}
