@@ -6,17 +6,14 @@ use super::growing::Growing;
 use crate::scene::document::{Key, Node, Span, Value};
 use crate::scene::toml;
 
-/// A key, or the parts of a dotted one.
+/// `[name]`, or `[[name]]` if it begins an item.
 #[derive(Debug)]
-pub(super) struct Path<'t> {
+pub(super) struct Header<'t> {
+    pub(super) span: Span,
+    pub(super) is_item: bool,
+    /// The parts of the name.
     pub(super) first: Key<'t>,
     pub(super) more: Vec<Key<'t>>,
-}
-
-impl<'t> From<Key<'t>> for Path<'t> {
-    fn from(first: Key<'t>) -> Self {
-        Self { first, more: Vec::new() }
-    }
 }
 
 /// A place in a text.
@@ -26,7 +23,7 @@ pub(super) struct Cursor<'t> {
     at: usize,
 }
 
-/// The most parts of a dotted key, and the deepest nesting of lists and tables in one value: more than any scene has, and
+/// The most parts of a name after the first, and the deepest nesting of lists and tables in one value: more than any scene has, and
 /// less than the oracle allows.
 const DEEPEST: usize = 16;
 
@@ -86,40 +83,37 @@ impl<'t> Cursor<'t> {
         }
     }
 
-    /// `[name]` or `[[name]]`: the name, the place, and whether it is the latter.
-    pub(super) fn header(&mut self) -> Option<(Path<'t>, Span, bool)> {
+    pub(super) fn header(&mut self) -> Option<Header<'t>> {
         let start = self.at;
         let is_item = self.rest().starts_with(b"[[");
         self.at += if is_item { 2 } else { 1 };
-        self.skip_blanks();
-        let path = self.path()?;
+        let (first, mut more) = (self.key()?, Vec::new());
+        while self.eat(b'.') {
+            more.push(self.key()?);
+        }
         let is_closed = self.eat(b']') && (!is_item || self.eat(b']'));
-        is_closed.then_some((path, start..self.at, is_item))
+        let is_header = is_closed && more.len() <= DEEPEST;
+        is_header.then_some(Header { span: start..self.at, is_item, first, more })
     }
 
-    /// `key = value`, within `depth` values.
-    pub(super) fn entry(&mut self, depth: usize) -> Option<(Path<'t>, Node<'t>)> {
-        let path = self.path()?;
+    /// Add `key = value`, which stands within `depth` values, to `table`.
+    pub(super) fn entry(&mut self, table: &mut Growing<'t>, depth: usize) -> Option<()> {
+        let first = self.key()?;
+        let second = if self.eat(b'.') { Some(self.key()?) } else { None };
         if !self.eat(b'=') {
             return None;
         }
         self.skip_blanks();
-        Some((path, self.value(depth)?))
-    }
-
-    /// A key of one or more parts, and blanks after it.
-    fn path(&mut self) -> Option<Path<'t>> {
-        let mut path = Path::from(self.key()?);
-        self.skip_blanks();
-        while self.eat(b'.') {
-            self.skip_blanks();
-            path.more.push(self.key()?);
-            self.skip_blanks();
+        let node = self.value(depth)?;
+        match second {
+            None => table.add(first, node),
+            Some(second) => table.add_dotted(first, second, node),
         }
-        (path.more.len() < DEEPEST).then_some(path)
     }
 
+    /// A part of a key, and blanks around it.
     fn key(&mut self) -> Option<Key<'t>> {
+        self.skip_blanks();
         let start = self.at;
         let name = match self.peek()? {
             quote @ (b'"' | b'\'') if !self.rest().starts_with(&[quote; 3]) => match self.string(quote)? {
@@ -128,7 +122,9 @@ impl<'t> Cursor<'t> {
             },
             _ => Cow::Borrowed(self.bare_key()?),
         };
-        Some(Key { span: start..self.at, name })
+        let span = start..self.at;
+        self.skip_blanks();
+        Some(Key { span, name })
     }
 
     fn bare_key(&mut self) -> Option<&'t str> {
@@ -173,8 +169,7 @@ impl<'t> Cursor<'t> {
         let mut entries = Growing::default();
         self.at += 1;
         while self.skip_gaps()?? != b'}' {
-            let (path, node) = self.entry(depth + 1)?;
-            entries.add(path, node)?;
+            self.entry(&mut entries, depth + 1)?;
             self.end_item(b'}')?;
         }
         self.at += 1;

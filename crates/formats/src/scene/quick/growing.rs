@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 
-use super::cursor::Path;
 use crate::scene::document::{Key, Node, Value};
 
 /// The entries of a table, as far as they are known.
@@ -30,26 +29,23 @@ impl<'t> Growing<'t> {
         self.entries.iter().position(|(key, _)| key.name == name)
     }
 
-    /// Add what a key of one or two parts says.
-    pub(super) fn add(&mut self, path: Path<'t>, node: Node<'t>) -> Option<()> {
-        let Path { first, mut more } = path;
-        let second = more.pop();
-        if !more.is_empty() {
-            return None;
-        }
-        match (second, self.entries.last_mut()) {
-            (Some(second), Some((key, table))) if self.is_dotted && key.name == first.name => {
+    /// Add an entry.
+    pub(super) fn add(&mut self, key: Key<'t>, node: Node<'t>) -> Option<()> {
+        self.settle()?;
+        self.entries.push((key, node));
+        Some(())
+    }
+
+    /// Add an entry to a table that is known by keys of two parts only.
+    pub(super) fn add_dotted(&mut self, first: Key<'t>, second: Key<'t>, node: Node<'t>) -> Option<()> {
+        match self.entries.last_mut() {
+            Some((key, table)) if self.is_dotted && key.name == first.name => {
                 table.entries_mut()?.push((second, node));
             }
-            (Some(second), _) => {
-                self.settle()?;
+            _ => {
                 let table = Node { span: first.span.clone(), value: Value::Table(vec![(second, node)]) };
-                self.entries.push((first, table));
+                self.add(first, table)?;
                 self.is_dotted = true;
-            }
-            (None, _) => {
-                self.settle()?;
-                self.entries.push((first, node));
             }
         }
         Some(())

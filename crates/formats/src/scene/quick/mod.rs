@@ -15,7 +15,7 @@ mod tests;
 
 use super::document::{Key, Node, Span, Value};
 use super::sections::{Lists, SceneFile};
-use cursor::{Cursor, Path};
+use cursor::{Cursor, Header};
 use growing::{Growing, all_differ};
 
 /// What the scene `text` says; none if something is wrong with it, or not understood here.
@@ -82,25 +82,24 @@ impl<'t> Document<'t> {
 
     /// `key = value` and the end of the line.
     fn entry(&mut self) -> Option<()> {
-        let (path, node) = self.cursor.entry(0)?;
         let table = self.open.last_mut().map_or(&mut self.root, |open| &mut open.entries);
-        table.add(path, node)?;
+        self.cursor.entry(table, 0)?;
         self.cursor.end_line()
     }
 
     /// `[name]` or `[[name]]` and the end of the line.
     fn header(&mut self) -> Option<()> {
-        let (path, span, is_item) = self.cursor.header()?;
+        let header = self.cursor.header()?;
         self.cursor.end_line()?;
         let above = self.root.entries().len();
         if above > MOST_ROOT_KEYS {
             return None;
         }
         self.closed.get_or_insert(above);
-        match (is_item, path.more.is_empty()) {
-            (true, true) => self.item(path.first, span),
+        match (header.is_item, header.more.is_empty()) {
+            (true, true) => self.item(header.first, header.span),
             (true, false) => None,
-            (false, _) => self.table(path, span),
+            (false, _) => self.table(header),
         }
     }
 
@@ -113,8 +112,8 @@ impl<'t> Document<'t> {
         Some(())
     }
 
-    fn table(&mut self, path: Path<'t>, span: Span) -> Option<()> {
-        let mut keys: Vec<_> = std::iter::once(path.first).chain(path.more).collect();
+    fn table(&mut self, header: Header<'t>) -> Option<()> {
+        let mut keys: Vec<_> = std::iter::once(header.first).chain(header.more).collect();
         let own = keys.pop()?;
         let kept = keys.iter().zip(&self.open).take_while(|(key, open)| key.name == open.key.name).count();
         self.close_to(kept)?;
@@ -127,7 +126,7 @@ impl<'t> Document<'t> {
             }
             _ => return None,
         }
-        self.push(own, span, Form::Stated);
+        self.push(own, header.span, Form::Stated);
         Some(())
     }
 
@@ -142,7 +141,7 @@ impl<'t> Document<'t> {
             let Open { key, span, form, entries } = self.open.pop()?;
             let node = Node { span, value: Value::Table(entries.finish()?) };
             match (self.open.last_mut(), form) {
-                (Some(parent), _) => parent.entries.add(key.into(), node)?,
+                (Some(parent), _) => parent.entries.add(key, node)?,
                 (None, Form::Item) => {
                     self.lists.push(&key.name, &node)?;
                     self.spare = Growing::reuse(node);
@@ -156,7 +155,7 @@ impl<'t> Document<'t> {
     /// Put a table into the root, where an earlier part of it may be.
     fn attach(&mut self, key: Key<'t>, node: Node<'t>, form: Form) -> Option<()> {
         match self.root.find(&key.name) {
-            None => self.root.add(key.into(), node),
+            None => self.root.add(key, node),
             Some(at) if form == Form::Implied && self.closed.is_some_and(|closed| at >= closed) => {
                 self.root.extend(at, node)
             }
