@@ -182,6 +182,10 @@ fn a_window_that_is_covered_takes_no_time() {
     above.key("Escape");
     assert_eq!(above.exit_code(), 0);
     wait_for("the turntable again", || viewer.cpu_share() > 0.2);
+    viewer.set_mapped(false);
+    wait_for("rest off the display", || viewer.cpu_share() < 0.03);
+    viewer.set_mapped(true);
+    wait_for("the turntable on the display", || viewer.cpu_share() > 0.2);
 }
 
 #[test]

@@ -28,6 +28,8 @@ mod enlarge;
 mod errands;
 mod host;
 mod input;
+#[cfg(feature = "window")]
+mod mapped;
 mod opener;
 mod options;
 #[cfg(feature = "window")]

@@ -14,6 +14,12 @@ use whitted::tree::BuildOptions;
 /// costs a thousandth of a core, works on every file system and needs no dependency.
 const POLL: Duration = Duration::from_millis(30);
 
+/// A file that has changed is read when it stays as it is for so long: a large one would be read half written, and told
+/// to be broken only after the time in which the whole could have been read. Files that are written all the time are read
+/// after the latter time.
+const WRITING: Duration = Duration::from_millis(5);
+const LONGEST_WRITING: Duration = Duration::from_millis(100);
+
 /// A broken scene is shown as such only if its files stay as they are for so long: editors that write a file in
 /// several steps leave it empty for a moment.
 const SETTLED: Duration = Duration::from_millis(60);
@@ -211,10 +217,18 @@ impl Work {
                 Err(RecvTimeoutError::Timeout) => false,
                 Err(RecvTimeoutError::Disconnected) => return,
             };
-            // All of them are asked, so that each remembers how it is.
-            changed = self.watched.iter_mut().fold(false, |any, file| file.changed() | any);
+            changed = self.changed();
             is_due = ordered || changed;
+            if changed {
+                wait_while(|| self.changed());
+            }
         }
+    }
+
+    /// Whether any file is another one than when this was last asked.
+    fn changed(&mut self) -> bool {
+        // All of them are asked, so that each remembers how it is.
+        self.watched.iter_mut().fold(false, |any, file| file.changed() | any)
     }
 
     fn tell(&self, news: News) {
@@ -292,5 +306,34 @@ impl Work {
                 self.watched.push(Watched::new(path));
             }
         }
+    }
+}
+
+/// Wait until files are written.
+fn wait_while(mut change: impl FnMut() -> bool) {
+    let start = Instant::now();
+    loop {
+        std::thread::sleep(WRITING);
+        if !change() || start.elapsed() >= LONGEST_WRITING {
+            return;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_read_when_they_are_written_or_never_will_be() {
+        let mut left = 3;
+        let start = Instant::now();
+        wait_while(|| {
+            left -= 1;
+            left > 0
+        });
+        assert!(left == 0 && start.elapsed() >= 3 * WRITING || start.elapsed() >= LONGEST_WRITING);
+        wait_while(|| true);
+        assert!(start.elapsed() >= LONGEST_WRITING);
     }
 }

@@ -11,8 +11,8 @@ pub(crate) const GLANCE_AWAY: Duration = Duration::from_millis(400);
 pub(crate) struct Sight {
     /// Other windows cover it, or it was put away: told by an event.
     is_covered: bool,
-    /// X11 says so only when it is asked.
-    is_minimized: bool,
+    /// Minimised or unmapped: X11 says so only when it is asked.
+    is_away: bool,
     /// When that was asked last.
     asked: Option<Instant>,
     /// Since when a picture waits to be taken: Wayland takes none for windows that cannot be seen.
@@ -36,13 +36,13 @@ impl Sight {
     }
 
     /// Whether anybody may see it.
-    pub(crate) fn is_seen(&mut self, now: Instant, is_minimized: impl Fn() -> bool) -> bool {
+    pub(crate) fn is_seen(&mut self, now: Instant, is_away: impl FnOnce() -> bool) -> bool {
         let is_long_ago = |time: Instant| now.duration_since(time) >= GLANCE_AWAY;
         if self.asked.is_none_or(is_long_ago) {
             self.asked = Some(now);
-            self.is_minimized = is_minimized();
+            self.is_away = is_away();
         }
-        !(self.is_covered || self.is_minimized || self.waiting.is_some_and(is_long_ago))
+        !(self.is_covered || self.is_away || self.waiting.is_some_and(is_long_ago))
     }
 }
 

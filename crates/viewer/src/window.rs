@@ -3,6 +3,7 @@
 use crate::app::App;
 use crate::host::Host;
 use crate::input::{Button, Input, Key, Modifiers};
+use crate::mapped::Mapping;
 use crate::options::Options;
 use crate::session::{Effect, Session};
 use crate::sight::{GLANCE_AWAY, Sight};
@@ -86,6 +87,8 @@ struct Open {
     app: App,
     clipboard: Option<arboard::Clipboard>,
     sight: Sight,
+    /// On X11.
+    mapping: Option<Mapping>,
 }
 
 impl Shell {
@@ -108,7 +111,8 @@ impl Shell {
         let size: [u32; 2] = window.inner_size().into();
         session.resize(size, Instant::now());
         let app = App::new(session, size, window.scale_factor() as f32);
-        Ok(Open { surface, window, app, clipboard: None, sight: Sight::default() })
+        let mapping = Mapping::of(&window);
+        Ok(Open { surface, window, app, clipboard: None, sight: Sight::default(), mapping })
     }
 }
 
@@ -182,7 +186,9 @@ impl ApplicationHandler<Woken> for Shell {
 impl Open {
     /// Move on, and ask for what is to be drawn. When to be called again at the latest.
     fn tick(&mut self, now: Instant) -> Option<Duration> {
-        let is_seen = self.sight.is_seen(now, || self.window.is_minimized() == Some(true));
+        let is_seen = self.sight.is_seen(now, || {
+            self.window.is_minimized() == Some(true) || self.mapping.as_mut().is_some_and(Mapping::is_away)
+        });
         self.app.session.set_visible(is_seen);
         let (next, draw) = self.app.tick(now);
         if draw {

@@ -160,6 +160,11 @@ impl<'a> Viewer<'a> {
         self.tell(&["click", &button.to_string()]);
     }
 
+    /// Take the window off the display behind its back, as no window manager does; or put it back.
+    pub(crate) fn set_mapped(&self, is_mapped: bool) {
+        self.tell(&[if is_mapped { "windowmap" } else { "windowunmap" }, &self.window]);
+    }
+
     /// Give the window another size.
     pub(crate) fn resize(&self, [width, height]: [u32; 2]) {
         self.tell(&["windowsize", &self.window, &width.to_string(), &height.to_string()]);

@@ -162,6 +162,8 @@ fn bar_of_colours(ui: &mut egui::Ui, view: Aov, width: f32) {
 pub(super) fn notes(context: &Context, session: &Session) {
     let area = Area::new(Id::new("notes")).anchor(Align2::LEFT_BOTTOM, vec2(GAP, -GAP - STATUS)).order(Order::Middle);
     area.interactable(false).show(context, |ui| {
+        // Else lines are no longer than those of the notes before, of which there may have been none.
+        ui.set_max_width(room(context).x);
         for note in session.notes() {
             pill().show(ui, |ui| ui.label(&note.text));
         }
