@@ -14,9 +14,11 @@ use whitted::tree::BuildOptions;
 
 /// Numbers of threads that render.
 const THREADS: [usize; 2] = [1, 2];
-/// Frames with each number of threads, of which the median counts; those before are not timed.
-const FRAMES: usize = 31;
-const WARM_UP: usize = 3;
+/// Frames that follow each other with one number of threads, as they do where something moves: threads that have slept
+/// for the time of a frame may wake on one core, and stay there for milliseconds.
+const BURST: usize = 11;
+/// Bursts with each number of threads. The first warms up; of the frames of the others the median counts.
+const BURSTS: usize = 5;
 
 /// Seconds that a frame took.
 struct Frame {
@@ -40,11 +42,13 @@ pub(super) fn run(name: &str, text: &str) -> Result<Vec<Value>, Box<dyn Error>> 
     }
     let renderer = Renderer::default();
     let neighbours = Neighbours::watch();
-    for round in 0..WARM_UP + FRAMES {
+    for burst in 0..BURSTS {
         for (pool, frames) in &mut pools {
-            let frame = pool.install(|| timed(&renderer, &prepared, &settings))?;
-            if round >= WARM_UP {
-                frames.push(frame);
+            for _ in 0..BURST {
+                let frame = pool.install(|| timed(&renderer, &prepared, &settings))?;
+                if burst > 0 {
+                    frames.push(frame);
+                }
             }
         }
     }
