@@ -50,6 +50,6 @@ pub(super) fn scale<F: F32Lanes>(token: F::Token, x: F, exponent: F::U32) -> F {
 
 /// `2^exponent` for exponents of normal numbers.
 #[inline(always)]
-fn power_of_2<F: F32Lanes>(token: F::Token, exponent: F::U32) -> F {
+pub(super) fn power_of_2<F: F32Lanes>(token: F::Token, exponent: F::U32) -> F {
     F::from_bits((exponent + F::U32::splat(token, 127)).shl::<23>())
 }

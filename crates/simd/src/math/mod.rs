@@ -20,7 +20,7 @@ pub mod lanes {
     pub use super::circular::{cos, sin, sin_cos, tan};
     pub use super::exponential::{exp, exp2};
     pub use super::inverse::{acos, asin, atan2};
-    pub use super::logarithm::{ln, log2, pow};
+    pub use super::logarithm::{ln, log2, pow, pow_of_fraction};
 }
 
 macro_rules! plain {
@@ -34,7 +34,7 @@ macro_rules! plain {
 }
 
 plain! {
-    exp2(x) exp(x) log2(x) ln(x) pow(x, y)
+    exp2(x) exp(x) log2(x) ln(x) pow(x, y) pow_of_fraction(x, y)
     sin(x) cos(x) tan(x)
     atan2(y, x) acos(x) asin(x)
 }

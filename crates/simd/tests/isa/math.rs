@@ -76,6 +76,38 @@ fn worst_pow(span: f32) -> (f64, f32, f32) {
 }
 
 #[test]
+fn powers_of_fractions_are_near_enough_for_shading() {
+    let mut random = SplitMix64(9);
+    let mut worst = (0.0, 0.0, 0.0);
+    for i in 0..2_000_000 {
+        let x = match i % 3 {
+            0 => f32::from_bits(random.next_u32() % (1.0f32.to_bits() + 1)).max(f32::MIN_POSITIVE),
+            1 => 1.0 - random.next_f32() * 0.01,
+            _ => random.next_f32().max(f32::MIN_POSITIVE),
+        };
+        let y = random.next_f32() * 32.0 / x.log2().abs().max(1e-6);
+        let (power, exact) = (math::pow_of_fraction(x, y), f64::from(x).powf(f64::from(y)));
+        assert!((0.0..=1.0).contains(&power), "{x}^{y} = {power}");
+        let error = (f64::from(power) / exact - 1.0).abs();
+        if error > worst.0 {
+            worst = (error, x, y);
+        }
+    }
+    println!("powers of fractions: 2^{:.2}, {worst:?}", worst.0.log2());
+    assert!(worst.0 <= 2f64.powi(-17), "{worst:?}");
+}
+
+#[test]
+fn powers_of_fractions_have_exact_ends() {
+    for x in [f32::MIN_POSITIVE, 1e-20, 0.1, 0.5, 0.999_999_9, 1.0] {
+        assert_eq!(math::pow_of_fraction(x, 0.0), 1.0, "{x}^0");
+        assert_eq!(math::pow_of_fraction(1.0, 1e6 * x), 1.0, "1^{x}");
+    }
+    assert_eq!(math::pow_of_fraction(0.5, 127.0), 0.0);
+    assert_eq!(math::pow_of_fraction(0.9, f32::MAX), 0.0);
+}
+
+#[test]
 fn pow_error_is_bounded() {
     for (span, bound) in [(16.0, 1.5), (152.0, 4.0)] {
         let worst = worst_pow(span);
@@ -206,7 +238,8 @@ impl ForLanes for Same {
                 compare(&what, &found, &(0..xs.len()).map(plain).collect::<Vec<_>>());
             })*};
         }
-        check! { exp2(xs) exp(xs) log2(xs) ln(xs) sin(xs) cos(xs) tan(xs) acos(xs) asin(xs) atan2(ys, xs) pow(xs, ys) }
+        check! { exp2(xs) exp(xs) log2(xs) ln(xs) sin(xs) cos(xs) tan(xs) acos(xs) asin(xs) atan2(ys, xs) pow(xs, ys)
+        pow_of_fraction(xs, ys) }
     }
 }
 

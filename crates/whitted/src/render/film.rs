@@ -1,7 +1,7 @@
 //! The light that samples have gathered, in a form that does not depend on the order in which it came.
 
 use crate::math::{Vec3, Vec3f};
-use simd::F32Lanes;
+use simd::{F32Lanes, Kernel, Level, Simd};
 
 /// Light sums of a batch of samples, in 64-bit fixed point: integers add in any order to the same sum.
 ///
@@ -49,10 +49,33 @@ impl Film {
         L::accumulate(addends, mask, sample, &mut self.sums);
     }
 
-    /// The light of every sample, in order; finite and ≥ 0.
-    pub(super) fn colors(&self) -> impl ExactSizeIterator<Item = Vec3f> {
-        self.sums.iter().map(|&[r, g, b, _]| Vec3::new(r, g, b).map(|sum| (sum as f64 / f64::from(UNIT)) as f32))
+    /// Make the light of every sample, in order, a colour: finite and ≥ 0.
+    pub(super) fn develop(&self, level: Level, colors: &mut Vec<Vec3f>) {
+        simd::dispatch(level, Develop { sums: &self.sums, colors });
     }
+}
+
+/// The kernel of [`Film::develop`].
+struct Develop<'a> {
+    sums: &'a [[i64; 4]],
+    colors: &'a mut Vec<Vec3f>,
+}
+
+impl Kernel for Develop<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        self.colors.resize(self.sums.len(), Vec3f::ZERO);
+        for (color, &[r, g, b, _]) in self.colors.iter_mut().zip(self.sums) {
+            *color = Vec3::new(to_float(r), to_float(g), to_float(b));
+        }
+    }
+}
+
+#[inline(always)]
+fn to_float(sum: i64) -> f32 {
+    (sum as f64 / f64::from(UNIT)) as f32
 }
 
 fn to_fixed(light: f32) -> i64 {
@@ -89,7 +112,9 @@ mod tests {
         let mut film = Film::default();
         film.reset(1);
         lights.iter().for_each(|&light| film.add(0, Vec3f::splat(light)));
-        film.colors().next().expect("one sample").x
+        let mut colors = Vec::new();
+        film.develop(Level::best(), &mut colors);
+        colors[0].x
     }
 
     #[test]

@@ -122,17 +122,16 @@ struct Row<'a> {
 
 impl PassRows<'_> {
     /// Fill in colours and samples of `part`, which lies in the rectangle, given row by row; samples only if they are kept.
-    pub(super) fn set(&self, part: &PixelRect, colors: impl Iterator<Item = Vec3f>, samples: &[FirstSample]) {
-        let (mut colors, width) = (colors, part.width as usize);
-        let left = (part.x - self.rect.x) as usize;
+    pub(super) fn set(&self, part: &PixelRect, colors: &[Vec3f], samples: &[FirstSample]) {
+        let (left, width) = ((part.x - self.rect.x) as usize, part.width as usize);
         let mut samples = samples.chunks_exact(width);
-        for y in part.y - self.rect.y..part.y - self.rect.y + part.height {
+        for (y, colors) in (part.y - self.rect.y..).zip(colors.chunks_exact(width)) {
             // A panic elsewhere leaves the row usable: it holds plain numbers.
             let mut row = self.rows[y as usize].lock().unwrap_or_else(PoisonError::into_inner);
             if let Some(samples) = samples.next() {
                 row.samples[left..left + width].copy_from_slice(samples);
             }
-            row.colors[left..left + width].iter_mut().zip(&mut colors).for_each(|(to, color)| *to = color);
+            row.colors[left..left + width].copy_from_slice(colors);
         }
     }
 }

@@ -185,7 +185,7 @@ impl<P: Probe> Job<'_, P> {
             workspace.first_samples(&self.context, region, self.probe, |part, samples| {
                 rows.set(part, samples.colors(), samples.first());
                 if is_inside {
-                    self.progress.painted(part, &mut samples.colors());
+                    self.progress.painted(part, &mut samples.colors().iter().copied());
                 }
             })?;
             Ok(workspace.take_statistics())

@@ -4,7 +4,7 @@
 //! the scene, and the pyramid around them holds most of it. Seen from the lamp, every point lies in some direction; rays
 //! in the order of a space-filling curve over these directions fill narrow pyramids.
 
-use super::rows::{BLOCK, array, first_lanes};
+use super::rows::{BLOCK, array, first_lanes, lengthen};
 use crate::math::{Vec3, Vec3f};
 use simd::{F32Lanes, Kernel, Level, Simd, U32Lanes};
 
@@ -42,7 +42,7 @@ impl Packing {
             sum += *start;
             *start = sum;
         }
-        self.order.resize(self.keys.len(), 0);
+        lengthen(&mut self.order, self.keys.len());
         for (index, &key) in (0..).zip(&self.keys) {
             let start = &mut self.starts[key as usize];
             self.order[*start as usize] = index;

@@ -1,6 +1,7 @@
 //! Rectangles of pixels, and the division of a picture into regions.
 
 use super::execution::Region;
+use std::ops::Range;
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,13 +52,16 @@ impl PixelRect {
     /// Tile by tile, call `visit` with the coordinates of every pixel: rays in this order have close neighbours, and the
     /// 64 of a tile that is not cut off make a packet.
     pub(super) fn for_each_in_tiles(&self, mut visit: impl FnMut([u32; 2])) {
+        self.for_each_row_of_tiles(|y, columns| columns.for_each(|x| visit([x, y])));
+    }
+
+    /// As [`for_each_in_tiles`](Self::for_each_in_tiles), the pixels of a row of a tile at once.
+    pub(super) fn for_each_row_of_tiles(&self, mut visit: impl FnMut(u32, Range<u32>)) {
         let (right, bottom) = (self.x + self.width, self.y + self.height);
         for top in (self.y..bottom).step_by(TILE) {
             for left in (self.x..right).step_by(TILE) {
                 for y in top..bottom.min(top + TILE as u32) {
-                    for x in left..right.min(left + TILE as u32) {
-                        visit([x, y]);
-                    }
+                    visit(y, left..right.min(left + TILE as u32));
                 }
             }
         }

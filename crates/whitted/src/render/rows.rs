@@ -141,6 +141,13 @@ fn spread<T: Copy + Default, const N: usize>(rows: [&[T]; N], stride: usize) -> 
     (all, first)
 }
 
+/// Make `elements` as long as `len`, with zeros at the end; with room for [`LEAST`] if there is not enough, instead of growing.
+#[inline(always)]
+pub(super) fn lengthen<T: Copy + Default>(elements: &mut Vec<T>, len: usize) {
+    elements.reserve(len.max(LEAST).saturating_sub(elements.len()));
+    elements.resize(len, T::default());
+}
+
 /// The first `count` lanes, or all if there are fewer.
 #[inline(always)]
 pub(super) fn first_lanes<L: F32Lanes>(token: L::Token, count: usize) -> L::Mask {

@@ -6,12 +6,13 @@ use super::first_pass::FirstSample;
 use super::rows::{array, array_f32, lanes_of};
 use super::statistics::Statistics;
 use crate::math::{Vec3, Vec3f};
-use simd::{F32Lanes, MaskLanes};
+use simd::{F32Lanes, Level, MaskLanes};
 
 /// The results of a batch of samples, filled in any order by whoever traces them.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
     film: Film,
+    colors: Vec<Vec3f>,
     /// Empty if nobody wants to know.
     first: Vec<FirstSample>,
     /// Counts over all batches since they were last taken.
@@ -76,9 +77,14 @@ impl Samples {
         }
     }
 
-    /// The colour of every sample, in order.
-    pub(super) fn colors(&self) -> impl ExactSizeIterator<Item = Vec3f> {
-        self.film.colors()
+    /// All light has come: make colours of it.
+    pub(super) fn develop(&mut self, level: Level) {
+        self.film.develop(level, &mut self.colors);
+    }
+
+    /// The colour of every sample, in order, as of when it was developed.
+    pub(super) fn colors(&self) -> &[Vec3f] {
+        &self.colors
     }
 
     /// What every camera ray saw, in the order of samples; empty if that is not kept.

@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::lighting::Sent;
 use super::packing::Packing;
-use super::rows::{BLOCK, Rows};
+use super::rows::{BLOCK, Rows, lengthen};
 use super::samples::Samples;
 use crate::math::{Vec3, Vec3f};
 use crate::ray::{Hit, HitBatch, Ray, RayBatch, Rays};
@@ -78,7 +78,7 @@ impl ShadowBatch {
         let [r, g, b] = [7, 8, 9].map(|row| self.rows.floats(row));
         let (sample, rays) = (self.rows.integers(0), self.packed.rays());
         self.clear.clear();
-        self.clear.resize(self.rows.len().next_multiple_of(BLOCK), 0);
+        lengthen(&mut self.clear, self.rows.len().next_multiple_of(BLOCK));
         for (place, (&occlusion, &index)) in self.occlusion.iter().zip(self.packed.packing.order()).enumerate() {
             let index = index as usize;
             self.clear[index] = u32::from(occlusion == Occlusion::Clear);
@@ -150,7 +150,7 @@ impl Kernel for Permute<'_> {
         let (whole, rest) = order.as_chunks::<BLOCK>();
         for (row, out) in rows.iter_mut().enumerate() {
             let from = batch.floats(row);
-            out.resize(order.len(), 0.0);
+            lengthen(out, order.len());
             let (to, to_rest) = out.as_chunks_mut::<BLOCK>();
             for (to, order) in to.iter_mut().zip(whole) {
                 let index = <S::F32x16 as F32Lanes>::U32::load(token, order);

@@ -52,6 +52,17 @@ impl Places {
         self.numbers.clear();
     }
 
+    /// The middles of the pixels of `part`, tile by tile; their numbers go row by row.
+    fn fill_with_middles(&mut self, part: &PixelRect) {
+        self.clear();
+        part.for_each_row_of_tiles(|y, columns| {
+            let first = part.index([columns.start, y]) as u32;
+            self.numbers.extend(first..first + columns.len() as u32);
+            self.axes[0].extend(columns.clone().map(|x| x as f32 + MIDDLE[0]));
+            self.axes[1].extend(columns.map(|_| y as f32 + MIDDLE[1]));
+        });
+    }
+
     /// Append sample `number`, at a place in a pixel.
     fn push(&mut self, number: u32, pixel: [u32; 2], place: [f32; 2]) {
         self.numbers.push(number);
@@ -64,6 +75,11 @@ impl Places {
     #[inline(always)]
     pub(super) fn load<L: F32Lanes>(&self, token: L::Token, at: usize) -> ([L; 2], L::U32) {
         let end = self.len().min(at + L::WIDTH);
+        if end == at + L::WIDTH {
+            let [x, y] = &self.axes;
+            let axes = [L::load_slice(token, &x[at..]), L::load_slice(token, &y[at..])];
+            return (axes, L::U32::load_slice(token, &self.numbers[at..]));
+        }
         let (mut axes, mut numbers) = ([L::Array::default(); 2], <L::U32 as U32Lanes>::Array::default());
         for axis in 0..2 {
             axes[axis].as_mut()[..end - at].copy_from_slice(&self.axes[axis][at..end]);
@@ -88,10 +104,7 @@ impl Workspace {
         hand_over: impl Fn(&PixelRect, &Samples),
     ) -> Result<(), Cancelled> {
         for part in region.parts(CHUNK) {
-            watched(probe, Phase::Queue, || {
-                self.places.clear();
-                part.for_each_in_tiles(|pixel| self.places.push(part.index(pixel) as u32, pixel, MIDDLE));
-            });
+            watched(probe, Phase::Queue, || self.places.fill_with_middles(&part));
             self.trace(context, probe)?;
             watched(probe, Phase::Queue, || hand_over(&part, &self.samples));
         }
@@ -163,7 +176,8 @@ impl Workspace {
         self.place(jitter, pixel, samples);
         self.samples.reset(self.places.len(), true);
         self.recursive.record(context, &self.places, &mut self.samples, recorder)?;
-        Ok(self.samples.colors().collect())
+        self.samples.develop(context.execution.level);
+        Ok(self.samples.colors().to_vec())
     }
 
     /// Make a batch of some samples of one pixel.
@@ -180,9 +194,11 @@ impl Workspace {
         samples.reset(places.len(), context.keeps_first_samples());
         samples.statistics.camera_rays += places.len() as u64;
         match context.execution.method {
-            Method::Wavefront => wavefront.run(context, places, samples, probe),
-            Method::Recursive => watched(probe, Phase::Trace, || recursive.run(context, places, samples)),
+            Method::Wavefront => wavefront.run(context, places, samples, probe)?,
+            Method::Recursive => watched(probe, Phase::Trace, || recursive.run(context, places, samples))?,
         }
+        watched(probe, Phase::Queue, || samples.develop(context.execution.level));
+        Ok(())
     }
 }
 

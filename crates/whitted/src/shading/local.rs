@@ -102,6 +102,7 @@ fn highlight_cosine<L: F32Lanes>(
 #[inline(always)]
 fn power<L: F32Lanes>(token: L::Token, cosine: L, exponent: L) -> L {
     let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
-    let power = simd::math::lanes::pow(token, cosine.max(zero).min(one), exponent);
+    let fraction = cosine.max(L::splat(token, f32::MIN_POSITIVE)).min(one);
+    let power = simd::math::lanes::pow_of_fraction(token, fraction, exponent);
     L::select(cosine.gt(zero), power, zero)
 }
