@@ -104,14 +104,27 @@ impl Tree {
         self.fit.primitive_slack(distance)
     }
 
-    /// Ask the memory for what a walk will read of `child`.
+    /// Ask the memory for what a walk will read of `child` first.
     #[inline(always)]
     pub(super) fn prefetch(&self, child: Child) {
         match child.decode() {
             ChildKind::Interior(index) => simd::prefetch(&self.nodes, index),
-            ChildKind::Leaf { kind: LeafKind::Triangles, first, .. } => simd::prefetch(&self.leaves.triangles, first),
-            ChildKind::Leaf { kind: LeafKind::Spheres, first, .. } => simd::prefetch(&self.leaves.spheres, first),
+            ChildKind::Leaf { kind: LeafKind::Triangles, first, count } => {
+                prefetch_first(&self.leaves.triangles, first, count);
+            }
+            ChildKind::Leaf { kind: LeafKind::Spheres, first, count } => {
+                prefetch_first(&self.leaves.spheres, first, count);
+            }
             ChildKind::Leaf { kind: LeafKind::Shapes, .. } => {}
+        }
+    }
+
+    /// As [`prefetch`](Self::prefetch), for children of which most will be visited, the last first. Nothing if all of the tree
+    /// is near anyway.
+    #[inline(always)]
+    pub(super) fn prefetch_all(&self, children: impl DoubleEndedIterator<Item = Child>) {
+        if self.nodes.len() > NEAR {
+            children.rev().for_each(|child| self.prefetch(child));
         }
     }
 
@@ -126,5 +139,18 @@ impl Tree {
     /// The first violation found.
     pub fn validate(&self, primitives: &Primitives) -> Result<(), String> {
         validate::validate(self, primitives)
+    }
+}
+
+/// Trees of so many nodes fit the second-level cache with their leaves.
+const NEAR: usize = 256;
+
+/// Blocks of a leaf that are asked for: a leaf rarely has more, and what reads these brings the next.
+const AHEAD: usize = 2;
+
+#[inline(always)]
+fn prefetch_first<T>(blocks: &[T], first: usize, count: usize) {
+    for block in first..first + count.min(AHEAD) {
+        simd::prefetch(blocks, block);
     }
 }

@@ -93,10 +93,6 @@ fn work_off<S: Simd, G: Goal>(
 ) {
     while let Some((child, len)) = lists.waiting.pop() {
         top -= len;
-        // While this list is worked off, what the next one needs comes from memory.
-        if let Some(&(next, _)) = lists.waiting.last() {
-            walk.tree.prefetch(next);
-        }
         match child.decode() {
             ChildKind::Interior(_) if len < MIN_LIST => {
                 single::interleaved(token, walk, &mut lists.stack, &lists.ids[top..top + len], child, counts);
@@ -108,7 +104,10 @@ fn work_off<S: Simd, G: Goal>(
                 lists.current.extend_from_slice(&lists.ids[top..top + len]);
                 lists.masks.resize(len, 0);
                 let any = enter(token, node, walk.rays, &lists.current, octant, &mut lists.masks);
+                let before = lists.waiting.len();
                 top = distribute(token, node, octant, any, lists, top);
+                // While the nearest list is worked off, what the others need comes from memory.
+                walk.tree.prefetch_all(lists.waiting[before..].iter().map(|&(child, _)| child));
             }
             ChildKind::Leaf { kind, first, count } => {
                 for ids in lists.ids[top..top + len].chunks(abreast::LANES) {

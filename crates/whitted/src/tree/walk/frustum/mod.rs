@@ -28,8 +28,10 @@ pub(in crate::tree) const PACKET: usize = 64;
 const LANES: usize = 16;
 const ROWS: usize = PACKET / LANES;
 
-/// Primitives that a packet may test before it goes to the stream: more than this and its rays have little in common.
-const BUDGET: u32 = 96;
+/// Primitives that a packet may test before it goes to the stream: more than this and its rays have little in common. Less
+/// where rays end, since what a list asks of the rays of a packet that ended early is little.
+const BUDGET: u32 = 256;
+const BUDGET_OF_ENDING: u32 = 96;
 
 /// Follow the packet of rays from `first` on; false if it is none, or exceeded its budget: then its rays still have to
 /// be walked.
@@ -45,7 +47,7 @@ pub(super) fn walk<S: Simd, G: Goal>(
     let Some(mut packet) = Packet::new(token, walk, first) else { return false };
     let mut pyramid = Pyramid::around(token, walk, &packet);
     let octant = packet.octant;
-    let mut budget = BUDGET;
+    let mut budget = if G::ENDS_RAYS { BUDGET_OF_ENDING } else { BUDGET };
     stack.reserve(walk.tree.depth(), 1);
     (stack.entry[0], stack.child[0]) = (f32::NEG_INFINITY, Child::interior(0).0);
     let mut top = 1;
@@ -57,13 +59,13 @@ pub(super) fn walk<S: Simd, G: Goal>(
         match Child(stack.child[top]).decode() {
             ChildKind::Interior(node) => {
                 counts.node_steps += PACKET as u64;
-                let node = &walk.tree.nodes[node];
+                let (node, bottom) = (&walk.tree.nodes[node], top);
                 let (mask, entry) = pyramid.enter(token, node);
                 let keys = (&mut stack.entry[top..top + WIDTH]).try_into().expect("WIDTH entries");
                 let values = (&mut stack.child[top..top + WIDTH]).try_into().expect("WIDTH children");
                 top += token.compress_in_order(mask, &node.order(octant), entry, node.children(), keys, values);
-                // The nearest is wanted at once: what comes after it can be fetched meanwhile.
-                walk.tree.prefetch(Child(stack.child[top.saturating_sub(2)]));
+                // Most of them will be visited: while the nearest is, the others come from memory.
+                walk.tree.prefetch_all(stack.child[bottom..top].iter().map(|&child| Child(child)));
             }
             ChildKind::Leaf { kind: LeafKind::Shapes, .. } => {
                 packet.finish(token, walk, first);
