@@ -71,7 +71,7 @@ impl Renderer {
     pub(super) fn render(self, name: &str, places: &Places) -> io::Result<Render> {
         let (text, cpu) = run(&mut self.command(name, places), &places.scenes)?;
         let report = match self {
-            Self::Whitted => ours(&text, cpu),
+            Self::Whitted => ours(&text),
             Self::PovRay => pov_ray(&text),
             Self::Tachyon => tachyon(&text, cpu),
         };
@@ -118,16 +118,14 @@ fn share(cpu: f64, trace: f64, others: &[f64]) -> f64 {
     cpu * trace / (trace + others.iter().sum::<f64>())
 }
 
-/// Our statistics are JSON.
-fn ours(text: &str, cpu: f64) -> Option<Render> {
+/// Our statistics are JSON, with the CPU seconds of each phase.
+fn ours(text: &str) -> Option<Render> {
     let report: Value = serde_json::from_str(&text[text.find('{')?..]).ok()?;
-    let seconds = |phase: &str| report["seconds"][phase].as_f64();
     let rays = |sort: &str| report["rays"][sort].as_u64();
-    let others = [seconds("load")?, seconds("build")?, seconds("write")?];
     let (reflected, refracted) = (rays("reflected")?, rays("refracted")?);
     let all = rays("camera")? + reflected + refracted;
     let rays = Some(RayCounts { all, shadow: rays("shadow")?, reflected, refracted });
-    Some(Render { trace: share(cpu, seconds("trace")?, &others), rays })
+    Some(Render { trace: report["cpu_seconds"]["trace"].as_f64()?, rays })
 }
 
 /// POV-Ray gives the CPU seconds of tracing itself.
@@ -169,14 +167,14 @@ mod tests {
         assert_eq!(render.rays, Some(RayCounts { all: 823_806, shadow: 803_262, reflected: 291_449, refracted: 0 }));
 
         let ours_text = r#"{ "rays": { "camera": 3, "shadow": 4, "reflected": 2, "refracted": 1 },
-            "seconds": { "load": 0.1, "build": 0.1, "trace": 0.6, "write": 0.2 } }"#;
-        let render = ours(ours_text, 0.5).unwrap();
-        assert!((render.trace - 0.3).abs() < 1e-12);
+            "cpu_seconds": { "load": 0.1, "build": 0.1, "trace": 0.6, "write": 0.2 } }"#;
+        let render = ours(ours_text).unwrap();
+        assert_eq!(render.trace, 0.6);
         assert_eq!(render.rays.unwrap().all, 6);
 
         let tachyon_text = "Scene Parsing Time:     0.25 seconds\nPreprocessing Time: 0.25 seconds\n\
             Ray Tracing Time:     1.0 seconds\n    Image I/O Time:     0.5 seconds\n";
         assert_eq!(tachyon(tachyon_text, 1.0).unwrap().trace, 0.5);
-        assert!(tachyon("error", 1.0).is_none() && pov_ray("").is_none() && ours("", 1.0).is_none());
+        assert!(tachyon("error", 1.0).is_none() && pov_ray("").is_none() && ours("").is_none());
     }
 }

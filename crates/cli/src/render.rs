@@ -8,11 +8,12 @@ use crate::load::load;
 use crate::output::Target;
 use crate::picture::PictureFormat;
 use crate::progress::Display;
-use crate::report::Report;
+use crate::report::{Report, Spent};
 use crate::stopwatch::Stopwatch;
 use crate::variant::Built;
+use cpu_time::ProcessTime;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use whitted::render::{
     Aov, AovPicture, Cancel, Classic, Execution, Frame, Method, PixelRect, aovs, aovs_classic, render_classic,
     render_rect,
@@ -182,10 +183,11 @@ impl Job<'_> {
     }
 }
 
-fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
-    let start = Instant::now();
+fn timed<T>(spent: &mut Spent, work: impl FnOnce() -> T) -> T {
+    let (start, cpu) = (Instant::now(), ProcessTime::try_now());
     let result = work();
-    *duration += start.elapsed();
+    spent.wall += start.elapsed();
+    spent.cpu += cpu.and_then(|cpu| cpu.try_elapsed()).unwrap_or_default();
     result
 }
 
@@ -221,9 +223,9 @@ fn tell_summary(arguments: &RenderArguments, picture: &Target, rectangle: PixelR
         return;
     }
     let PixelRect { width, height, .. } = rectangle;
-    let total = report.load + report.build + report.trace + report.aov + report.write;
-    let [load, build, trace, write, total] =
-        [report.load, report.build, report.trace, report.write, total].map(|time| time.as_secs_f64());
+    let seconds = |spent: &Spent| spent.wall.as_secs_f64();
+    let [load, build, trace, write] = [&report.load, &report.build, &report.trace, &report.write].map(seconds);
+    let total = load + build + trace + write + seconds(&report.aov);
     eprintln!(
         "wrote {picture}, {width}x{height}, in {total:.2} s (load {load:.2}, build {build:.2}, trace {trace:.2}, write {write:.2})"
     );

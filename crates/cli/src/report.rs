@@ -12,13 +12,21 @@ use whitted::tree::TreeReport;
 pub(crate) struct Report {
     pub(crate) statistics: Statistics,
     pub(crate) tree: TreeReport,
-    pub(crate) load: Duration,
-    pub(crate) build: Duration,
-    pub(crate) trace: Duration,
+    pub(crate) load: Spent,
+    pub(crate) build: Spent,
+    pub(crate) trace: Spent,
     /// For pictures of something other than light.
-    pub(crate) aov: Duration,
-    pub(crate) write: Duration,
+    pub(crate) aov: Spent,
+    pub(crate) write: Spent,
     pub(crate) shares: Shares,
+}
+
+/// What a phase took.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Spent {
+    pub(crate) wall: Duration,
+    /// Of all threads; zero where the system does not tell.
+    pub(crate) cpu: Duration,
 }
 
 /// One value of the report.
@@ -44,6 +52,8 @@ impl Report {
     fn rows(&self) -> Vec<(&'static str, Value)> {
         use Value::{Count, Real, Unknown};
         let s = &self.statistics;
+        let wall = |spent: Spent| Real(spent.wall.as_secs_f64());
+        let cpu = |spent: Spent| Real(spent.cpu.as_secs_f64());
         let per_ray = |count: u64| Real(count as f64 / s.rays().max(1) as f64);
         vec![
             ("rays.camera", Count(s.camera_rays)),
@@ -56,11 +66,16 @@ impl Report {
             ("tree.nodes", Count(self.tree.nodes as u64)),
             ("tree.leaves", Count(self.tree.leaves as u64)),
             ("tree.references", Count(self.tree.references as u64)),
-            ("seconds.load", Real(self.load.as_secs_f64())),
-            ("seconds.build", Real(self.build.as_secs_f64())),
-            ("seconds.trace", Real(self.trace.as_secs_f64())),
-            ("seconds.aov", Real(self.aov.as_secs_f64())),
-            ("seconds.write", Real(self.write.as_secs_f64())),
+            ("seconds.load", wall(self.load)),
+            ("seconds.build", wall(self.build)),
+            ("seconds.trace", wall(self.trace)),
+            ("seconds.aov", wall(self.aov)),
+            ("seconds.write", wall(self.write)),
+            ("cpu_seconds.load", cpu(self.load)),
+            ("cpu_seconds.build", cpu(self.build)),
+            ("cpu_seconds.trace", cpu(self.trace)),
+            ("cpu_seconds.aov", cpu(self.aov)),
+            ("cpu_seconds.write", cpu(self.write)),
             ("percent.trace", Real(self.shares.trace)),
             ("percent.shadow", Real(self.shares.shadow)),
             ("percent.shade", Real(self.shares.shade)),

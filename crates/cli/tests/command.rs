@@ -284,6 +284,7 @@ fn statistics_have_stable_keys() {
     let keys: Vec<&str> = text.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
     let expected = "rays.camera rays.shadow rays.reflected rays.refracted hits.camera tests_per_ray steps_per_ray \
                     tree.nodes tree.leaves tree.references seconds.load seconds.build seconds.trace seconds.aov seconds.write \
+                    cpu_seconds.load cpu_seconds.build cpu_seconds.trace cpu_seconds.aov cpu_seconds.write \
                     percent.trace percent.shadow percent.shade percent.queue percent.refine \
                     pixels.supersampled cut.weight cut.depth cut.budget peak_memory_bytes";
     assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
