@@ -86,7 +86,11 @@ pub(super) fn walk<S: Simd, G: Goal>(
                 }
                 budget -= tested;
                 if tested > 0 {
-                    pyramid.reach = packet.reach(token);
+                    match G::ENDS_RAYS {
+                        true if packet.has_ended(token) => break,
+                        true => {}
+                        false => pyramid.reach = packet.reach(token),
+                    }
                 }
             }
         }

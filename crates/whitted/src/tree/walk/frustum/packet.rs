@@ -135,6 +135,17 @@ impl Packet {
         if reach < f32::INFINITY { reach.next_up().next_up() } else { reach }
     }
 
+    /// True if all rays have ended.
+    #[inline(always)]
+    pub(super) fn has_ended<S: Simd>(&self, token: S) -> bool {
+        let zero = S::F32x16::splat(token, 0.0);
+        let mut ended = self.limit.load(token, 0).lt(zero);
+        for row in 1..ROWS {
+            ended = ended & self.limit.load(token, row).lt(zero);
+        }
+        ended.all()
+    }
+
     /// Write the rays' limits back, and settle what they found.
     #[inline(always)]
     pub(super) fn finish<S: Simd, G: Goal>(&self, token: S, walk: &mut Walk<'_, G>, first: usize) {
