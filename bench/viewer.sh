@@ -48,14 +48,16 @@ rate() {
             fps[n] = $3
             share[n] = 100 * size[1] / width
             depth = $7
+            weight = $10
             draft = (($1 - ticks) / 100) / (($2 - time) / 1e9) / $3
             free[n] = draft > 0 ? share[n] * sqrt(threads * 0.92 / 30 / draft) : 0
             if (free[n] > 100) free[n] = 100
         }
         { ticks = $1; time = $2 }
         END {
-            printf "| %s | %d×%d | %.0f | %.0f %% | %d | %.0f %% | %s |\n", name, width, height, median(fps, n),
-                median(share, n), depth, median(free, n), full
+            gsub(/,/, "", weight)
+            printf "| %s | %d×%d | %.0f | %.0f %% | %d | %s | %.0f %% | %s |\n", name, width, height, median(fps, n),
+                median(share, n), depth, weight, median(free, n), full
         }
     ' "$work/report"
 }
@@ -100,8 +102,8 @@ edits() {
     sed -n 's/.*seen after \([0-9]*\) ms/\1/p' "$work/report" | sort -n | awk '{ a[NR] = $1 } END { print a[int((NR + 1) / 2)] " (at most " a[NR] ")" }'
 }
 
-echo "| scene | window | pictures a second | width and height | depth | of free cores | full quality |"
-echo "| --- | --- | ---: | ---: | ---: | ---: | ---: |"
+echo "| scene | window | pictures a second | width and height | depth | weights from | of free cores | full quality |"
+echo "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |"
 rate mix-1000 "$root/scenes/mix-1000.toml" 640 480
 rate mix-1000 "$root/scenes/mix-1000.toml" 1280 720
 rate still-life "$root/scenes/still-life.toml" 1280 720

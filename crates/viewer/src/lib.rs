@@ -51,6 +51,7 @@ pub use host::{Host, Opened, Shot};
 pub use input::{Button, Input, Key, Modifiers};
 pub use opener::Activity;
 pub use options::Options;
+pub use quality::Draft;
 pub use screen::{Finished, Picture, Stage};
 pub use session::{Destination, Effect, Inspection, Note, Session, Shown};
 #[cfg(feature = "window")]

@@ -229,7 +229,7 @@ impl Work {
     fn draft(&mut self, wanted: &Wanted, prepared: &Prepared) {
         loop {
             let start = Instant::now();
-            let draft = self.quality.draft(wanted.settings.size, wanted.settings.depth);
+            let draft = self.quality.draft(&wanted.settings);
             let settings = draft_settings(&wanted.settings, &draft);
             let end = self.quality.patience().map(|patience| start + patience);
             let deadline = Deadline::new(end, &settings);
@@ -282,7 +282,7 @@ impl Work {
             picture.size = wanted.settings.size;
             *spare = std::mem::replace(&mut picture.pixels, pixels);
             picture.stage = Stage::Draft;
-            picture.draft = (draft.size, draft.depth);
+            picture.draft = *draft;
             picture.draft_time = time;
             picture.scene = Some(Arc::clone(&wanted.scene));
             picture.drafts += 1;
@@ -336,9 +336,10 @@ pub(crate) fn nameless(camera: &Camera) -> NamedCamera {
     NamedCamera { name: String::new(), camera: *camera }
 }
 
-/// The settings of a draft: smaller, perhaps shallower, one sample a pixel.
+/// The settings of a draft: one sample a pixel.
 fn draft_settings(settings: &Settings, draft: &Draft) -> Settings {
-    Settings { size: draft.size, depth: draft.depth, antialias: Antialias::Off, ..settings.clone() }
+    let Draft { size, depth, min_weight } = *draft;
+    Settings { size, depth, min_weight, antialias: Antialias::Off, ..settings.clone() }
 }
 
 /// Collects a draft, and gives it up when its time is over.

@@ -8,6 +8,7 @@ use whitted::scene::{Camera, Prepared, Settings};
 
 use crate::enlarge::packed;
 use crate::host::{Host, Shot};
+use crate::quality::Draft;
 
 /// How far the picture is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -64,8 +65,8 @@ pub struct Picture {
     pub stage: Stage,
     /// Counts changes.
     pub version: u64,
-    /// Size and depth of the draft from which it began.
-    pub draft: ([u32; 2], u32),
+    /// The draft from which it began.
+    pub draft: Draft,
     /// How long that draft took.
     pub draft_time: Duration,
     /// Drafts that were shown since the viewer was opened.

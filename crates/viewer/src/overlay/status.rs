@@ -1,6 +1,7 @@
 //! How far the picture is and how fast it moves: a line in the corner, and a thin bar while it gets better.
 
 use super::theme::{ACCENT, FAINT, GAP, pill, room};
+use crate::quality::Draft;
 use crate::screen::Stage;
 use crate::session::Session;
 use egui::{Align2, Area, Context, Id, LayerId, Order, RichText, vec2};
@@ -43,9 +44,10 @@ fn line(session: &mut Session, now: Instant) -> Option<(String, String)> {
     let line = match picture.stage {
         Stage::Blank => return None,
         Stage::Draft => {
-            let ([drawn, _], depth) = picture.draft;
+            let Draft { size: [drawn, _], depth, .. } = picture.draft;
             let percent = 100.0 * f64::from(drawn) / f64::from(width.max(1));
-            let shallow = if depth < session_depth(session) { format!(", depth {depth}") } else { String::new() };
+            let is_shallow = depth < session.settings().depth;
+            let shallow = if is_shallow { format!(", depth {depth}") } else { String::new() };
             (format!("{rate:.0} fps"), format!("{size} at {percent:.0} %{shallow}"))
         }
         Stage::Refining(share) if share < 1.0 => (format!("{:.0} %", share * 100.0), format!("{size}, tracing")),
@@ -58,10 +60,6 @@ fn line(session: &mut Session, now: Instant) -> Option<(String, String)> {
         }
     };
     Some(line)
-}
-
-fn session_depth(session: &Session) -> u32 {
-    session.settings().depth
 }
 
 /// A large number in three digits.

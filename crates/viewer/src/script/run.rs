@@ -5,6 +5,7 @@ use crate::app::App;
 use crate::host::{Host, Shot};
 use crate::input::{Input, Key, Modifiers};
 use crate::options::Options;
+use crate::quality::Draft;
 use crate::screen::Stage;
 use crate::session::{Effect, Session};
 use std::path::Path;
@@ -194,12 +195,14 @@ impl Puppet<'_> {
         let rate = self.app.session.rate(Instant::now());
         let edit = self.app.session.edit_time().map(|time| format!(", change seen after {} ms", time.as_millis()));
         let picture = self.app.session.picture();
-        let ([width, height], depth) = picture.draft;
+        let Draft { size: [width, height], depth, .. } = picture.draft;
         let finished = match (&picture.finished, picture.stage) {
             (Some(finished), Stage::Finished) => format!(", finished in {:.3} s", finished.time.as_secs_f64()),
             _ => String::new(),
         };
-        let line = format!("{rate:.1} fps, {width}x{height}, depth {depth}{finished}{}", edit.unwrap_or_default());
+        let weight = picture.draft.weight();
+        let edit = edit.unwrap_or_default();
+        let line = format!("{rate:.1} fps, {width}x{height}, depth {depth}, weights from {weight}{finished}{edit}");
         drop(picture);
         (self.print)(&line);
     }

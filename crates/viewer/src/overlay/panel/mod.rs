@@ -216,7 +216,9 @@ fn statistics(ui: &mut Ui, session: &Session) {
     let Some(scene) = session.scene() else { return };
     let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     let tree = session.prepared().map(|prepared| prepared.geometry().tree().report());
-    let finished = session.picture().finished.clone();
+    let picture = session.picture();
+    let (finished, draft) = (picture.finished.clone(), picture.draft);
+    drop(picture);
     grid(ui, "statistics", |ui| {
         let mut number = |name: &str, value: usize| {
             if value > 0 {
@@ -233,6 +235,11 @@ fn statistics(ui: &mut Ui, session: &Session) {
         if let Some([read, build]) = session.opening_times() {
             let text = format!("{:.2} s, {:.2} s", read.as_secs_f64(), build.as_secs_f64());
             row(ui, "read, built", |ui| _ = ui.monospace(text));
+        }
+        if draft.size != [0; 2] {
+            let [width, height] = draft.size;
+            row(ui, "draft", |ui| _ = ui.monospace(format!("{width}×{height}, depth {}", draft.depth)));
+            row(ui, "its weights", |ui| _ = ui.monospace(format!("from {}", draft.weight())));
         }
         let Some(finished) = finished else { return };
         let (statistics, seconds) = (finished.frame.statistics, finished.time.as_secs_f64());
