@@ -128,6 +128,11 @@ impl Tree {
         }
     }
 
+    /// True if the caches of most machines do not hold the tree.
+    pub(super) fn is_far(&self) -> bool {
+        self.report.bytes > FAR
+    }
+
     /// Levels of nodes below and including the root: bounds every stack of a walk.
     pub(super) fn depth(&self) -> usize {
         self.report.depth
@@ -144,6 +149,9 @@ impl Tree {
 
 /// Trees of so many nodes fit the second-level cache with their leaves.
 const NEAR: usize = 256;
+
+/// Trees of more bytes than this are far.
+const FAR: usize = 16 << 20;
 
 /// Blocks of a leaf that are asked for: a leaf rarely has more, and what reads these brings the next.
 const AHEAD: usize = 2;

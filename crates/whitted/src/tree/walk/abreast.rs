@@ -1,20 +1,24 @@
 //! Sixteen rays of a list abreast, against one primitive of a leaf after the other.
 //!
 //! One ray against a block of eight has to ask whether it hit anything, and of two rays one usually did: half of these
-//! jumps are guessed wrong. Rays abreast only choose, lane by lane, and are asked once, when the leaf is done.
+//! jumps are guessed wrong. Rays abreast only choose, lane by lane, and are asked once, when the leaf is done. Sixteen
+//! lanes also do twice the work of a block's eight.
 
 use super::Walk;
-use crate::geometry::sphere;
+use crate::geometry::{sphere, splat, triangle};
 use crate::ray::NONE;
 use crate::tree::goal::Goal;
-use crate::tree::leaf::{BLOCK, SphereBlock};
+use crate::tree::leaf::{BLOCK, SphereBlock, TriangleBlock};
 use simd::{F32Lanes, MaskLanes, Simd, U32Lanes};
 
 /// Rays abreast.
 pub(super) const LANES: usize = 16;
 
-/// Fewer rays than this are faster one by one: measured are 2, 3, 4, 6 and 8, of which 6 and 8 are alike.
+/// Fewer rays than this are faster one by one: measured are 2, 3, 4, 6 and 8 against spheres, 6 to 16 against triangles;
+/// 6, 8 and 10 are alike.
 pub(super) const MIN_RAYS: usize = 8;
+
+type U32<S> = <<S as Simd>::F32x16 as F32Lanes>::U32;
 
 /// Some rays of a list and what they have found in the leaf at hand.
 struct Abreast<S: Simd> {
@@ -24,7 +28,7 @@ struct Abreast<S: Simd> {
     before: S::F32x16,
     limit: S::F32x16,
     /// What is not settled yet, see [`Goal::offer_lanes`].
-    found: <S::F32x16 as F32Lanes>::U32,
+    found: U32<S>,
 }
 
 /// Test up to sixteen rays, given by their numbers, against blocks of spheres.
@@ -52,6 +56,43 @@ pub(super) fn spheres<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, ids: &
     abreast.finish(token, walk);
 }
 
+/// Test up to sixteen rays, given by their numbers, against blocks of triangles.
+///
+/// Each ray has its own renaming of axes, so each lane chooses among the coordinates of a vertex.
+#[inline(always)]
+pub(super) fn triangles<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, ids: &[u16], blocks: &[TriangleBlock]) {
+    let padded = padded(ids);
+    let (rays, axis, [t_min, limit]) = walk.rays.sheared_x16(token, &padded);
+    let along = [axis.eq(U32::<S>::splat(token, 0)), axis.eq(U32::<S>::splat(token, 1))];
+    let mut abreast = Abreast::<S>::new(token, padded, ids.len(), limit);
+    for block in blocks {
+        for lane in 0..BLOCK {
+            let primitive = block.primitive(lane);
+            if primitive == NONE {
+                break;
+            }
+            let vertices = [
+                renamed(along, splat(token, block.corner(0, lane, [0, 1, 2]))),
+                renamed(along, splat(token, block.corner(1, lane, [0, 1, 2]))),
+                renamed(along, splat(token, block.corner(2, lane, [0, 1, 2]))),
+            ];
+            let found = triangle::intersect(token, &rays, vertices, t_min, abreast.limit);
+            abreast.offer(token, walk.goal, found, primitive);
+        }
+    }
+    abreast.finish(token, walk);
+}
+
+/// A point with its axes renamed as [`triangle::renamed`] does, for each lane, whose ray runs mostly along x, y or else z.
+#[inline(always)]
+fn renamed<F: F32Lanes>([along_x, along_y]: [F::Mask; 2], [x, y, z]: [F; 3]) -> [F; 3] {
+    [
+        F::select(along_x, y, F::select(along_y, z, x)),
+        F::select(along_x, z, F::select(along_y, x, y)),
+        F::select(along_x, x, F::select(along_y, y, z)),
+    ]
+}
+
 /// The first id for lanes without one.
 #[inline(always)]
 fn padded(ids: &[u16]) -> [u16; LANES] {
@@ -65,7 +106,7 @@ impl<S: Simd> Abreast<S> {
     fn new(token: S, ids: [u16; LANES], count: usize, limit: S::F32x16) -> Self {
         let used = <S::F32x16 as F32Lanes>::Mask::from_bits(token, (1 << count) - 1);
         let limit = S::F32x16::select(used, limit, S::F32x16::splat(token, f32::NEG_INFINITY));
-        Self { ids, before: limit, limit, found: <S::F32x16 as F32Lanes>::U32::splat(token, NONE) }
+        Self { ids, before: limit, limit, found: U32::<S>::splat(token, NONE) }
     }
 
     /// Offer what the rays hit at `t`.
@@ -86,7 +127,7 @@ impl<S: Simd> Abreast<S> {
         let (mut limits, mut found) = ([0.0; LANES], [NONE; LANES]);
         self.limit.store(&mut limits);
         self.found.store(&mut found);
-        let nothing = self.found.eq(<S::F32x16 as F32Lanes>::U32::splat(token, NONE));
+        let nothing = self.found.eq(U32::<S>::splat(token, NONE));
         let mut changed = (!nothing | self.limit.lt(self.before)).bits();
         while changed != 0 {
             let lane = changed.trailing_zeros() as usize % LANES;

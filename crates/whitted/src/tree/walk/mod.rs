@@ -97,10 +97,13 @@ impl<G: Goal> Walk<'_, G> {
         count: usize,
         counts: &mut Counts,
     ) {
-        if kind == LeafKind::Spheres && ids.len() >= abreast::MIN_RAYS {
+        if ids.len() >= abreast::MIN_RAYS && kind != LeafKind::Shapes {
             counts.primitive_tests += (ids.len() * count * super::leaf::BLOCK) as u64;
-            let blocks = &self.tree.leaves.spheres[first..first + count];
-            return abreast::spheres(token, self, ids, blocks);
+            let (leaves, blocks) = (&self.tree.leaves, first..first + count);
+            return match kind {
+                LeafKind::Triangles => abreast::triangles(token, self, ids, &leaves.triangles[blocks]),
+                _ => abreast::spheres(token, self, ids, &leaves.spheres[blocks]),
+            };
         }
         for &id in ids {
             self.leaf(token, usize::from(id), kind, first, count, counts);

@@ -7,6 +7,7 @@ pub(super) use records::Records;
 
 use super::frustum::PACKET;
 use crate::geometry::sphere::{SphereRay, SphereRays};
+use crate::geometry::triangle::ShearedRays;
 use crate::geometry::{Primitives, ShearedRay};
 use crate::math::Vec3;
 use crate::ray::{NONE, Ray, Rays, lanes};
@@ -213,11 +214,26 @@ impl PreparedRays {
     #[inline(always)]
     pub(super) fn spheres_x16<S: Simd>(&self, token: S, rays: &[u16; STEP]) -> (SphereRays<S::F32x16>, [S::F32x16; 2]) {
         let low = first_halves(token, rays);
-        let high = low + <S::F32x16 as F32Lanes>::U32::splat(token, 1);
+        let high = low + U32::<S>::splat(token, 1);
         let [ox, oy, oz, dx] = S::F32x16::gather_x4(Octet::halves(&self.spheres), low);
         let [dy, dz, inverse_length_squared, _] = S::F32x16::gather_x4(Octet::halves(&self.spheres), high);
         let [_, _, t_min, limit] = S::F32x16::gather_x4(Octet::halves(&self.nodes), high);
         (SphereRays { origin: [ox, oy, oz], direction: [dx, dy, dz], inverse_length_squared }, [t_min, limit])
+    }
+
+    /// Sixteen rays in the form for triangles, their dominant axes, and the ends of their ranges so far.
+    #[inline(always)]
+    pub(super) fn sheared_x16<S: Simd>(
+        &self,
+        token: S,
+        rays: &[u16; STEP],
+    ) -> (ShearedRays<S::F32x16>, U32<S>, [S::F32x16; 2]) {
+        let low = first_halves(token, rays);
+        let high = low + U32::<S>::splat(token, 1);
+        let [ox, oy, oz, sx] = S::F32x16::gather_x4(Octet::halves(&self.sheared), low);
+        let [sy, sz, axis, _] = S::F32x16::gather_x4(Octet::halves(&self.sheared), high);
+        let [_, _, t_min, limit] = S::F32x16::gather_x4(Octet::halves(&self.nodes), high);
+        (ShearedRays { origin: [ox, oy, oz], shear: [sx, sy, sz] }, axis.to_bits(), [t_min, limit])
     }
 
     /// Upper ends of the ranges of sixteen rays of one packet.
@@ -230,7 +246,7 @@ impl PreparedRays {
         for lane in 0..STEP {
             rays[lane] += lane as u16;
         }
-        let high = first_halves(token, &rays) + <S::F32x16 as F32Lanes>::U32::splat(token, 1);
+        let high = first_halves(token, &rays) + U32::<S>::splat(token, 1);
         let [.., limit] = S::F32x16::gather_x4(Octet::halves(&self.nodes), high);
         limit
     }
@@ -258,6 +274,8 @@ impl PreparedRays {
 
 /// Rays in a step of the kernels here.
 const STEP: usize = 16;
+
+type U32<S> = <<S as Simd>::F32x16 as F32Lanes>::U32;
 
 const _: () = assert!(PACKET.is_multiple_of(STEP), "a packet is whole steps");
 
@@ -304,10 +322,10 @@ impl Kernel for Found<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, token: S) {
         let Self { prepared, primitive, t } = self;
-        let none = <S::F32x16 as F32Lanes>::U32::splat(token, NONE);
+        let none = U32::<S>::splat(token, NONE);
         let whole = prepared.len / STEP * STEP;
         for first in (0..whole).step_by(STEP) {
-            let found = !<S::F32x16 as F32Lanes>::U32::load_slice(token, &primitive[first..]).eq(none);
+            let found = !U32::<S>::load_slice(token, &primitive[first..]).eq(none);
             if found.any() {
                 let t = &mut t[first..first + STEP];
                 let limit = prepared.limits_x16(token, first);
@@ -322,12 +340,12 @@ impl Kernel for Found<'_> {
 
 /// Where the records of rays begin among the halves of all.
 #[inline(always)]
-fn first_halves<S: Simd>(token: S, rays: &[u16; STEP]) -> <S::F32x16 as F32Lanes>::U32 {
+fn first_halves<S: Simd>(token: S, rays: &[u16; STEP]) -> U32<S> {
     let mut wide = [0; STEP];
     for lane in 0..STEP {
         wide[lane] = u32::from(rays[lane]);
     }
-    <S::F32x16 as F32Lanes>::U32::load(token, &wide).shl::<1>()
+    U32::<S>::load(token, &wide).shl::<1>()
 }
 
 /// The largest absolute coordinate.

@@ -19,9 +19,12 @@ use crate::tree::query::{CHUNK, Counts};
 use simd::Simd;
 
 /// Lists shorter than this are walked ray by ray, in turns: a node costs more to load than it saves.
-const MIN_LIST: usize = 14;
+const MIN_LIST: usize = 8;
 
-const _: () = assert!(MIN_LIST <= single::WAYS + 1, "a short list is walked at once");
+/// The same in trees that no cache holds: rays in turns hide the waiting.
+const MIN_LIST_FAR: usize = 14;
+
+const _: () = assert!(MIN_LIST_FAR <= single::WAYS + 1, "a short list is walked at once");
 
 /// What `append_matching` may overwrite beyond a list.
 const SPARE: usize = 32;
@@ -91,10 +94,11 @@ fn work_off<S: Simd, G: Goal>(
     octant: usize,
     counts: &mut Counts,
 ) {
+    let min_list = if walk.tree.is_far() { MIN_LIST_FAR } else { MIN_LIST };
     while let Some((child, len)) = lists.waiting.pop() {
         top -= len;
         match child.decode() {
-            ChildKind::Interior(_) if len < MIN_LIST => {
+            ChildKind::Interior(_) if len < min_list => {
                 single::interleaved(token, walk, &mut lists.stack, &lists.ids[top..top + len], child, counts);
             }
             ChildKind::Interior(node) => {
