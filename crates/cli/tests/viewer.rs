@@ -10,6 +10,7 @@ mod window;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use window::panel::Shot;
 use window::{Desk, Viewer, wait_for};
 
 const SIZE: &str = "320x240";
@@ -38,11 +39,15 @@ fn whitted() -> Command {
     Command::new(env!("CARGO_BIN_EXE_whitted"))
 }
 
-/// The pixels that `whitted render` gives for a scene.
+/// The pixels that `whitted render` gives for a scene, in the usual size or another.
 fn rendered(folder: &Path, scene: &str) -> Vec<u8> {
+    rendered_at(folder, scene, SIZE)
+}
+
+fn rendered_at(folder: &Path, scene: &str, size: &str) -> Vec<u8> {
     let (file, picture) = (folder.join("expected.toml"), folder.join("expected.png"));
     fs::write(&file, scene).unwrap();
-    let status = whitted().args(["render", "-q", "--size", SIZE, "-o"]).args([&picture, &file]).status();
+    let status = whitted().args(["render", "-q", "--size", size, "-o"]).args([&picture, &file]).status();
     assert!(status.unwrap().success());
     window::pixels(&fs::read(picture).unwrap())
 }
@@ -106,6 +111,54 @@ fn a_person_looks_around_edits_and_closes() {
     viewer.key("Escape");
     viewer.key("Escape");
     assert_eq!(viewer.exit_code(), 0);
+}
+
+#[test]
+fn a_light_is_added_with_the_mouse_and_written_into_the_file() {
+    const WIDTH: usize = 700;
+    const SIZE: &str = "700x580";
+    /// Places of sections in the panel. Those below the lights move, and leave the window, when more of them are shown.
+    const PICTURE: usize = 0;
+    const LIGHTS: usize = 3;
+    let folder = folder("panel");
+    let Some(desk) = Desk::start() else { return };
+    let file = folder.join("scene.toml");
+    let dark = scene("#c04020", CAMERA).replace("[[light]]\npoint = [4, 6, 5]\n", "# Lights are missing.\n");
+    fs::write(&file, &dark).unwrap();
+    let viewer = Viewer::open(&desk, &folder, &["--size", SIZE], &file);
+    let shot = || Shot { width: WIDTH, pixels: viewer.picture() };
+
+    // The section of the lights is closed at first: its title comes with buttons below.
+    viewer.key("Tab");
+    wait_for("the panel", || shot().titles().len() > LIGHTS);
+    viewer.wait_until_at_rest();
+    let (left, lights) = shot().titles().swap_remove(LIGHTS);
+    assert!(shot().button_below(lights.end).is_none(), "nothing to press below the closed section");
+    viewer.click(1, [left as u32 + 10, (lights.start + lights.end) as u32 / 2]);
+    wait_for("the open section", || shot().button_below(lights.end).is_some());
+    viewer.wait_until_at_rest();
+    let before = shot();
+
+    // A point light is the first that can be added; it shines from the camera.
+    viewer.click(1, before.button_below(lights.end).expect("a button"));
+    viewer.key("o");
+    let lit = rendered_at(&folder, &format!("{dark}[[light]]\npoint = [0, 1.5, 6]\n"), SIZE);
+    viewer.wait_for_picture("the picture in the new light", |picture| picture == lit);
+    assert_eq!(fs::read_to_string(&file).unwrap(), dark, "nobody asked for it to be written");
+
+    // What could not be pressed before has become bright.
+    viewer.key("o");
+    wait_for("the panel again", || shot().titles().len() > LIGHTS);
+    viewer.wait_until_at_rest();
+    let titles = before.titles();
+    let rows = titles[PICTURE].1.end..titles[PICTURE + 1].1.start;
+    let button = shot().changed(&before, left, rows).expect("a button");
+    viewer.click(1, button);
+    wait_for("the light in the file", || fs::read_to_string(&file).is_ok_and(|text| text.contains("[[light]]")));
+    let written = fs::read_to_string(&file).unwrap();
+    let mut lines = written.lines();
+    assert!(dark.lines().all(|line| lines.any(|other| other == line)), "{written}");
+    assert!(rendered_at(&folder, &written, SIZE) == lit, "{written}");
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! A display without a screen, and a viewer on it with hands and eyes.
 
+pub(crate) mod panel;
+
 use std::fs;
 use std::io::Read;
 use std::path::Path;
@@ -171,7 +173,7 @@ impl<'a> Viewer<'a> {
     }
 
     /// What the window shows.
-    fn picture(&self) -> Vec<u8> {
+    pub(crate) fn picture(&self) -> Vec<u8> {
         let mut import = self.desk.command("import", &["-window", &self.window, "png:-"]);
         pixels(&import.stdout(Stdio::piped()).output().unwrap().stdout)
     }
