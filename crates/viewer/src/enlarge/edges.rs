@@ -11,9 +11,13 @@ use super::UNIT;
 /// The least step, in brightness from 0 to four times 255, that is an edge.
 const STEP: i32 = 48;
 
-/// The brightness of a small picture, smoothed, row by row.
+/// `DIVIDED[n]` is a 2⁻¹⁶th of what divides by `n`: exact for sums of up to three bytes.
+const DIVIDED: [u32; 4] = [0, 1 << 16, 1 << 15, (1 << 16) / 3 + 1];
+
+/// The brightness of a small picture, as it is and smoothed, row by row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outline {
+    bright: Vec<i16>,
     smooth: Vec<i16>,
     width: usize,
 }
@@ -34,11 +38,12 @@ impl Outline {
                 *out = binomial(three[0], three[1], three[2]);
             }
         }
-        Self { smooth, width }
+        Self { bright, smooth, width }
     }
 
-    fn row(&self, y: usize) -> &[i16] {
-        &self.smooth[y * self.width..][..self.width]
+    /// As it is, and smoothed.
+    fn row(&self, y: usize) -> [&[i16]; 2] {
+        [&self.bright, &self.smooth].map(|all| &all[y * self.width..][..self.width])
     }
 }
 
@@ -82,15 +87,15 @@ impl Edges {
         if outline.smooth.is_empty() {
             return;
         }
-        let (above, below) = (outline.row(low), outline.row(high));
+        let ([bright_above, above], [bright_below, below]) = (outline.row(low), outline.row(high));
+        let four =
+            |above: &[i16], below: &[i16], x: usize| [above[x], above[x + 1], below[x], below[x + 1]].map(i32::from);
         for x in 0..upper.len() - 1 {
-            let corners = [upper[x], upper[x + 1], lower[x], lower[x + 1]];
-            let bright = corners.map(brightness);
+            let bright = four(bright_above, bright_below, x);
             let range = Range::of(bright);
             if range.high - range.low >= STEP {
-                let smooth = [above[x], above[x + 1], below[x], below[x + 1]];
-                self.found.push((x, range.corners(bright, smooth)));
-                let step = range.step(corners, bright);
+                self.found.push((x, range.corners(bright, four(above, below, x))));
+                let step = range.step([upper[x], upper[x + 1], lower[x], lower[x + 1]], bright);
                 self.step.iter_mut().zip(step).for_each(|(steps, step)| steps[x] = step as u32);
             }
         }
@@ -136,12 +141,11 @@ impl Range {
         2 * brightness > self.low + self.high
     }
 
-    fn corners(self, bright: [i32; 4], smooth: [i16; 4]) -> Corners {
+    fn corners(self, bright: [i32; 4], smooth: [i32; 4]) -> Corners {
         let share = bright.map(|bright| u32::from(self.is_bright(bright)) * UNIT);
-        let mut level = smooth.map(|smooth| {
-            let above = (i32::from(smooth) - self.low).clamp(0, self.high - self.low);
-            above as u32 * UNIT / (self.high - self.low) as u32
-        });
+        // One division for all four.
+        let units = (UNIT << 16).div_ceil((self.high - self.low) as u32);
+        let mut level = smooth.map(|smooth| (smooth.clamp(self.low, self.high) - self.low) as u32 * units >> 16);
         // Half of it as it is: lines as thin as a pixel would vanish.
         level.iter_mut().zip(share).for_each(|(level, share)| *level = (*level + share) / 2);
         Corners { share, level }
@@ -149,12 +153,19 @@ impl Range {
 
     /// The mean of the bright corners less that of the dark ones: red, green, blue.
     fn step(self, corners: [u32; 4], bright: [i32; 4]) -> [i32; 3] {
-        let is_bright = bright.map(|bright| self.is_bright(bright));
-        let count = is_bright.iter().filter(|&&is| is).count() as i32;
-        [16, 8, 0].map(|shift| {
-            let mut sums = [0; 2];
-            corners.iter().zip(is_bright).for_each(|(corner, is)| sums[usize::from(is)] += component(*corner, shift));
-            sums[1] / count - sums[0] / (4 - count)
-        })
+        let (mut count, mut all, mut brights) = (0, [0; 2], [0; 2]);
+        for (corner, bright) in corners.into_iter().zip(bright) {
+            let is_bright = u32::from(self.is_bright(bright));
+            count += is_bright as usize;
+            // Red and blue in one word: sums of four bytes do not meet.
+            for (axis, parts) in [corner & 0x00ff_00ff, corner >> 8 & 0xff].into_iter().enumerate() {
+                all[axis] += parts;
+                brights[axis] += parts * is_bright;
+            }
+        }
+        let mean = |sum: u32, count: usize| (sum * DIVIDED[count] >> 16) as i32;
+        let step = |all: u32, bright: u32| mean(bright, count) - mean(all - bright, 4 - count);
+        let [red, blue] = [16, 0].map(|shift| step(all[0] >> shift & 0xffff, brights[0] >> shift & 0xffff));
+        [red, step(all[1], brights[1]), blue]
     }
 }
