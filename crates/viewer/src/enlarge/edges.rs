@@ -145,7 +145,7 @@ impl Range {
         let share = bright.map(|bright| u32::from(self.is_bright(bright)) * UNIT);
         // One division for all four.
         let units = (UNIT << 16).div_ceil((self.high - self.low) as u32);
-        let mut level = smooth.map(|smooth| (smooth.clamp(self.low, self.high) - self.low) as u32 * units >> 16);
+        let mut level = smooth.map(|smooth| ((smooth.clamp(self.low, self.high) - self.low) as u32 * units) >> 16);
         // Half of it as it is: lines as thin as a pixel would vanish.
         level.iter_mut().zip(share).for_each(|(level, share)| *level = (*level + share) / 2);
         Corners { share, level }
@@ -163,7 +163,7 @@ impl Range {
                 brights[axis] += parts * is_bright;
             }
         }
-        let mean = |sum: u32, count: usize| (sum * DIVIDED[count] >> 16) as i32;
+        let mean = |sum: u32, count: usize| ((sum * DIVIDED[count]) >> 16) as i32;
         let step = |all: u32, bright: u32| mean(bright, count) - mean(all - bright, 4 - count);
         let [red, blue] = [16, 0].map(|shift| step(all[0] >> shift & 0xffff, brights[0] >> shift & 0xffff));
         [red, step(all[1], brights[1]), blue]
