@@ -31,7 +31,7 @@ const ROWS: usize = PACKET / LANES;
 /// Primitives that a packet may test before it goes to the stream: more than this and its rays have little in common. Less
 /// where rays end, since what a list asks of the rays of a packet that ended early is little.
 const BUDGET: u32 = 256;
-const BUDGET_OF_ENDING: u32 = 96;
+const BUDGET_OF_ENDING: u32 = 32;
 
 /// Follow the packet of rays from `first` on; false if it is none, or exceeded its budget: then its rays still have to
 /// be walked.
