@@ -42,7 +42,7 @@ pub struct Draft {
 
 impl Draft {
     /// The least weight as it is said: `1/255`.
-    pub(crate) fn weight(&self) -> String {
+    pub fn weight(&self) -> String {
         let parts = 1.0 / self.min_weight;
         if parts.is_finite() && parts >= 2.0 { format!("1/{parts:.0}") } else { self.min_weight.to_string() }
     }
