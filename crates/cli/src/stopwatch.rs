@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use whitted::render::{Phase, Probe};
 
 /// Phases in the order of [`slot`].
@@ -36,10 +36,11 @@ impl Probe for Stopwatch {
 impl Stopwatch {
     /// How much of the time of all phases each took.
     pub(crate) fn shares(&self) -> Shares {
-        let spent = |phase| Duration::from_nanos(self.nanoseconds[slot(phase)].load(Ordering::Relaxed)).as_secs_f64();
-        let all = [Phase::Queue, Phase::Trace, Phase::Shadow, Phase::Shade, Phase::Refine].map(spent);
-        let total: f64 = all.iter().sum();
-        let percent = |phase| if total > 0.0 { 100.0 * spent(phase) / total } else { 0.0 };
+        // Whole nanoseconds: sums of seconds round, and a share would come out above 100.
+        let spent = |phase| self.nanoseconds[slot(phase)].load(Ordering::Relaxed);
+        let total: u64 =
+            [Phase::Queue, Phase::Trace, Phase::Shadow, Phase::Shade, Phase::Refine].map(spent).iter().sum();
+        let percent = |phase| if total > 0 { 100.0 * spent(phase) as f64 / total as f64 } else { 0.0 };
         Shares {
             trace: percent(Phase::Trace),
             shadow: percent(Phase::Shadow),
@@ -73,6 +74,7 @@ fn slot(phase: Phase) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     #[test]
     fn shares_are_percent_of_what_was_watched() {
