@@ -43,7 +43,7 @@ pub(super) fn spheres<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, ids: &
             if primitive == NONE {
                 break;
             }
-            let center = crate::geometry::splat(token, block.center(lane));
+            let center = splat(token, block.center(lane));
             let roots = sphere::roots(&rays, center, S::F32x16::splat(token, block.radius_squared(lane)));
             let hit = sphere::first_in_range(roots, t_min, abreast.limit);
             abreast.offer(token, walk.goal, hit, primitive);
