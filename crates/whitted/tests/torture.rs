@@ -143,6 +143,15 @@ fn a_million_equal_centers_are_built_in_bounded_time() {
 }
 
 #[test]
+fn spheres_by_themselves_are_not_cut() {
+    let references = |primitives: &Primitives| Tree::build(primitives, &TreeKind::Best.into()).report().references;
+    assert_eq!(references(&concentric_spheres(2000)), 2000);
+    let mut mixed = long_diagonals(2000);
+    mixed.push_sphere(Sphere { center: Vec3f::ZERO, radius: 1.0 });
+    assert!(references(&mixed) > 2001, "groups with triangles are");
+}
+
+#[test]
 fn builds_are_bounded_and_right() {
     let scenes: [Case; 13] = [
         ("collinear", collinear),

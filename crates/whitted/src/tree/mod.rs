@@ -54,7 +54,7 @@ pub enum TreeKind {
     Kd,
     /// Object splits only: quick to build and refittable.
     Fast,
-    /// Object and spatial splits compete.
+    /// Object and spatial splits compete; groups of spheres alone take object splits only.
     #[default]
     Best,
 }

@@ -243,8 +243,7 @@ impl Builder<'_> {
             false => object_split::find(self.level, self.options, cell.used(), bounds),
             true => exact_sweep::find(self.options, cell.used(), bounds),
         };
-        let spatial =
-            self.wants_spatial(object.as_ref(), bounds.half_area()).then(|| self.find_spatial(cell)).flatten();
+        let spatial = self.wants_spatial(object.as_ref(), cell).then(|| self.find_spatial(cell)).flatten();
         let spatial_cost = spatial.as_ref().map_or(f32::INFINITY, |s| s.cost);
         // The kd tree takes object splits only where no plane helps and the leaf would be too large.
         let prefer_spatial = self.options.kind == TreeKind::Kd && spatial_cost < leaf_cost;
@@ -263,14 +262,21 @@ impl Builder<'_> {
         }
     }
 
-    fn wants_spatial(&self, object: Option<&ObjectSplit>, area: f32) -> bool {
+    fn wants_spatial(&self, object: Option<&ObjectSplit>, cell: &Cell<'_>) -> bool {
         match self.options.kind {
             TreeKind::None | TreeKind::Fast => false,
             TreeKind::Kd => true,
-            TreeKind::Best => object.is_none_or(|split| {
-                split.overlap > (MIN_OVERLAP_OF_ROOT * self.root_area).max(MIN_OVERLAP_OF_NODE * area)
-            }),
+            TreeKind::Best => object.is_none_or(|split| self.overlaps_much(split, cell)) && self.gains_by_cuts(cell),
         }
+    }
+
+    fn overlaps_much(&self, split: &ObjectSplit, cell: &Cell<'_>) -> bool {
+        split.overlap > (MIN_OVERLAP_OF_ROOT * self.root_area).max(MIN_OVERLAP_OF_NODE * cell.bounds.half_area())
+    }
+
+    /// Whether a cell holds anything but spheres, whose parts have boxes that are hardly smaller than the whole (decision 8).
+    fn gains_by_cuts(&self, cell: &Cell<'_>) -> bool {
+        cell.used().iter().any(|reference| self.kind(reference) != LeafKind::Spheres)
     }
 
     fn find_spatial(&self, cell: &Cell<'_>) -> Option<SpatialSplit> {
