@@ -34,7 +34,8 @@ pub(super) fn load(path: &Path, name: &str) -> Result<Scene, Box<dyn Error>> {
         Ok(text) => parse_view(&text).ok_or(format!("{name}.cam lacks a line or a number"))?.moved(&space),
         Err(_) => View::of(&scene, primitives.bounds(), &space),
     };
-    let mesh = Mesh { vertices: primitives.vertices().to_vec(), triangles: triangles(&scene) };
+    let mesh =
+        Mesh { vertices: primitives.vertices().iter().map(|&v| v.into()).collect(), triangles: triangles(&scene) };
     Ok(Scene { name: name.into(), mesh, spheres: primitives.spheres().to_vec(), view })
 }
 

@@ -184,21 +184,15 @@ pub trait F32Lanes:
     fn store_slice(self, to: &mut [f32]);
     /// `table[index]` per lane. Panics if an index of any lane is out of range.
     fn gather(table: &[f32], index: Self::U32) -> Self;
-    /// Four neighbours for each lane: `table[index][k]` in vector `k`. Panics if an index of any lane is out of range.
+    /// Three neighbours for each lane: `table[index][k]` in vector `k`. Panics if an index of any lane is out of range.
+    #[inline(always)]
+    fn gather_x3(table: &[[f32; 3]], index: Self::U32) -> [Self; 3] {
+        gather_one_by_one(table, index)
+    }
+    /// Four neighbours for each lane, as [`gather_x3`](Self::gather_x3).
     #[inline(always)]
     fn gather_x4(table: &[[f32; 4]], index: Self::U32) -> [Self; 4] {
-        let mut numbers = <Self::U32 as U32Lanes>::Array::default();
-        index.store(&mut numbers);
-        let mut columns = [Self::Array::default(); 4];
-        for lane in 0..Self::WIDTH {
-            let row = table[numbers.as_ref()[lane] as usize];
-            for k in 0..4 {
-                columns[k].as_mut()[lane] = row[k];
-            }
-        }
-        let token = Self::from_bits(index).token();
-        let [a, b, c, d] = columns;
-        [Self::load(token, &a), Self::load(token, &b), Self::load(token, &c), Self::load(token, &d)]
+        gather_one_by_one(table, index)
     }
 
     /// Add to rows of a table, lane by lane where `mask` is set: `table[index][k] += addends[k]`, rounded toward zero.
@@ -283,6 +277,33 @@ pub trait F32Lanes:
     fn reduce_max(self) -> f32;
 }
 
+/// `table[index][k]` of each lane in vector `k`.
+#[inline(always)]
+fn gather_one_by_one<F: F32Lanes, const K: usize>(table: &[[f32; K]], index: F::U32) -> [F; K] {
+    let mut numbers = <F::U32 as U32Lanes>::Array::default();
+    index.store(&mut numbers);
+    let mut columns = [F::Array::default(); K];
+    for lane in 0..F::WIDTH {
+        let row = table[numbers.as_ref()[lane] as usize];
+        for k in 0..K {
+            columns[k].as_mut()[lane] = row[k];
+        }
+    }
+    let token = F::from_bits(index).token();
+    let mut out = [F::splat(token, 0.0); K];
+    for k in 0..K {
+        out[k] = F::load(token, &columns[k]);
+    }
+    out
+}
+
+/// Numbers as floats of the same bits, which only move.
+#[inline(always)]
+fn as_floats(table: &[[u32; 3]]) -> &[[f32; 3]] {
+    // SAFETY: the same size and alignment, and every pattern of bits is an f32.
+    unsafe { std::slice::from_raw_parts(table.as_ptr().cast(), table.len()) }
+}
+
 /// A vector of `u32`; arithmetic wraps.
 pub trait U32Lanes:
     Copy
@@ -322,6 +343,12 @@ pub trait U32Lanes:
     fn store_slice(self, to: &mut [u32]);
     /// `table[index]` per lane. Panics if an index of any lane is out of range.
     fn gather(table: &[u32], index: Self) -> Self;
+    /// Three neighbours for each lane, see [`F32Lanes::gather_x3`].
+    #[inline(always)]
+    fn gather_x3(table: &[[u32; 3]], index: Self) -> [Self; 3] {
+        let [a, b, c] = Self::F32::gather_x3(as_floats(table), index);
+        [a.to_bits(), b.to_bits(), c.to_bits()]
+    }
 
     /// Shift left by `N` bits (0 to 31).
     fn shl<const N: u32>(self) -> Self;

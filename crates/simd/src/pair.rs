@@ -133,6 +133,12 @@ where
         Self(V::gather(table, index.0), V::gather(table, index.1))
     }
     #[inline(always)]
+    fn gather_x3(table: &[[f32; 3]], index: Self::U32) -> [Self; 3] {
+        let [a, b, c] = V::gather_x3(table, index.0);
+        let [d, e, f] = V::gather_x3(table, index.1);
+        [Self(a, d), Self(b, e), Self(c, f)]
+    }
+    #[inline(always)]
     fn gather_x4(table: &[[f32; 4]], index: Self::U32) -> [Self; 4] {
         let [a, b, c, d] = V::gather_x4(table, index.0);
         let [e, f, g, h] = V::gather_x4(table, index.1);

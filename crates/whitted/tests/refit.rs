@@ -33,7 +33,7 @@ fn moved_primitives_are_hit_where_they_are() {
         let mut tree = Tree::build(&primitives, &TreeKind::Fast.into());
         for step in 0..3 {
             let step = MOVES[(seed as usize + step) % MOVES.len()];
-            primitives.vertices_mut().iter_mut().for_each(|p| *p = step(*p));
+            primitives.vertices_mut().iter_mut().for_each(|p| *p = step((*p).into()).to_array());
             primitives.spheres_mut().iter_mut().for_each(|s| s.center = step(s.center));
             tree.refit(&primitives).unwrap_or_else(|error| panic!("scene {seed}: {error}"));
             tree.validate(&primitives).unwrap_or_else(|error| panic!("scene {seed}: {error}"));
@@ -70,7 +70,7 @@ fn what_vanishes_may_come_back() {
     };
     assert_eq!(found(&tree, &primitives), 100);
     for gone in [0..150, 0..300] {
-        primitives.vertices_mut()[gone.clone()].fill(Vec3::splat(f32::NAN));
+        primitives.vertices_mut()[gone.clone()].fill([f32::NAN; 3]);
         tree.refit(&primitives).expect("fast trees can be fitted");
         tree.validate(&primitives).expect("sound");
         assert_eq!(found(&tree, &primitives), 100 - gone.len() / 3);

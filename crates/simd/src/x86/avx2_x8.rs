@@ -63,7 +63,7 @@ impl F32Lanes for F32x8 {
         load(from) = _mm256_loadu_ps(from);
         store(to, a) = _mm256_storeu_ps(to, a);
     }
-    gather_x4!(columns_x8);
+    gather_rows!(columns_x8);
     hardware_gather!(f32, U32x8; |from, at| _mm256_i32gather_ps::<4>(from, at));
     methods! {
         min(a, b) -> Self = _mm256_min_ps(a, b);

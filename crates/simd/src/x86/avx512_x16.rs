@@ -63,7 +63,7 @@ impl F32Lanes for F32x16 {
         load(from) = _mm512_loadu_ps(from);
         store(to, a) = _mm512_storeu_ps(to, a);
     }
-    gather_x4!(columns_x16);
+    gather_rows!(columns_x16);
     #[inline(always)]
     fn accumulate(addends: [Self; 4], mask: Mask16, index: U32x16, table: &mut [[i64; 4]]) {
         let [a, b, c, d] = addends;

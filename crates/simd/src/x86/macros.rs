@@ -185,11 +185,15 @@ macro_rules! hardware_gather {
     };
 }
 
-/// A gather of four neighbours: one read for each lane, turned in registers by `columns` of the token.
-macro_rules! gather_x4 {
+/// Gathers of three and of four neighbours: one read for each lane, turned in registers by `columns` of the token.
+macro_rules! gather_rows {
     ($columns:ident) => {
+        gather_rows!($columns, gather_x4, 4, F32x4::load);
+        gather_rows!($columns, gather_x3, 3, F32x4::load_three);
+    };
+    ($columns:ident, $name:ident, $count:literal, $load:path) => {
         #[inline(always)]
-        fn gather_x4(table: &[[f32; 4]], index: Self::U32) -> [Self; 4] {
+        fn $name(table: &[[f32; $count]], index: Self::U32) -> [Self; $count] {
             let token = index.1;
             let limit = table.len().min(u32::MAX as usize) as u32;
             assert!(index.lt(Self::U32::splat(token, limit)).all(), "an index is beyond the table");
@@ -199,9 +203,9 @@ macro_rules! gather_x4 {
             for lane in 0..Self::WIDTH {
                 // SAFETY: every lane is below the length of the table (asserted above). Checked one by one, the loop would
                 // not be unrolled, and the rows would go through memory.
-                rows[lane] = F32x4::load(token, unsafe { table.get_unchecked(numbers[lane] as usize) });
+                rows[lane] = $load(token, unsafe { table.get_unchecked(numbers[lane] as usize) });
             }
-            crate::Simd::$columns(token, rows)
+            *crate::Simd::$columns(token, rows).first_chunk().expect("no more than four")
         }
     };
 }
@@ -250,6 +254,11 @@ macro_rules! sse_with_fma {
             #[inline(always)]
             fn mul_add_fast(self, a: __m128, b: __m128, c: __m128) -> __m128 {
                 self.fma(a, b, c)
+            }
+            #[inline(always)]
+            fn load_three(self, from: &[f32; 3]) -> __m128 {
+                // SAFETY: the token exists; what the mask leaves out is not read.
+                unsafe { _mm_maskload_ps(from.as_ptr(), _mm_setr_epi32(-1, -1, -1, 0)) }
             }
         }
     };

@@ -9,6 +9,11 @@ pub trait Sse: Simd<F32x4 = F32x4<Self>> {
     fn fma(self, a: __m128, b: __m128, c: __m128) -> __m128;
     /// `a * b + c`, however it is fastest.
     fn mul_add_fast(self, a: __m128, b: __m128, c: __m128) -> __m128;
+    /// Three floats and 0.
+    #[inline(always)]
+    fn load_three(self, &[x, y, z]: &[f32; 3]) -> __m128 {
+        F32x4::load(self, &[x, y, z, 0.0]).0
+    }
 }
 
 register! {
@@ -50,6 +55,14 @@ operators! {
     BitOr bitor(a, b) = _mm_or_ps(a, b);
     BitXor bitxor(a, b) = _mm_xor_ps(a, b);
     Not not(a) = _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_epi32(-1)));
+}
+
+impl<S: Sse> F32x4<S> {
+    /// Three floats and 0.
+    #[inline(always)]
+    pub(super) fn load_three(token: S, from: &[f32; 3]) -> Self {
+        Self(token.load_three(from), token)
+    }
 }
 
 impl<S: Sse> F32Lanes for F32x4<S> {

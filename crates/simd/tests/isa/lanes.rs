@@ -219,15 +219,30 @@ impl Across {
         let expected: Vec<u32> = at.iter().map(|&i| table[i as usize].to_bits()).collect();
         let index = F::U32::load_slice(token, &at);
         assert_eq!(bits_of(F::gather(table, index).to_bits()), expected, "{} x{}", self.0, F::WIDTH);
-        let (fours, _) = table.as_chunks::<4>();
-        let places: Vec<u32> = at.iter().map(|i| i % fours.len() as u32).collect();
-        let columns = F::gather_x4(fours, F::U32::load_slice(token, &places));
-        for (k, column) in columns.into_iter().enumerate() {
-            let expected: Vec<u32> = places.iter().map(|&i| fours[i as usize][k].to_bits()).collect();
-            assert_eq!(bits_of(column.to_bits()), expected, "{} x{}", self.0, F::WIDTH);
-        }
+        self.check_columns::<F, 3>(token, table, &at, F::gather_x3);
+        self.check_columns::<F, 4>(token, table, &at, F::gather_x4);
         let table: Vec<u32> = bits(table);
         assert_eq!(bits_of(F::U32::gather(&table, index)), expected, "{} x{}", self.0, F::WIDTH);
+        let (rows, _) = table.as_chunks::<3>();
+        let last = rows.len() as u32 - 1;
+        for (k, column) in F::U32::gather_x3(rows, F::U32::splat(token, last)).into_iter().enumerate() {
+            assert_eq!(bits_of(column), vec![rows[last as usize][k]; F::WIDTH], "{} x{}", self.0, F::WIDTH);
+        }
+    }
+
+    fn check_columns<F: F32Lanes, const K: usize>(
+        &self,
+        token: F::Token,
+        table: &[f32],
+        at: &[u32],
+        gather: fn(&[[f32; K]], F::U32) -> [F; K],
+    ) {
+        let (rows, _) = table.as_chunks::<K>();
+        let places: Vec<u32> = at.iter().map(|i| i % rows.len() as u32).collect();
+        for (k, column) in gather(rows, F::U32::load_slice(token, &places)).into_iter().enumerate() {
+            let expected: Vec<u32> = places.iter().map(|&i| rows[i as usize][k].to_bits()).collect();
+            assert_eq!(bits_of(column.to_bits()), expected, "{} x{}, column {k} of {K}", self.0, F::WIDTH);
+        }
     }
 
     /// Rows are met more than once, and sums reach the end of their range.
@@ -286,9 +301,10 @@ fn gather_panics_out_of_range() {
             let index = F::U32::load_slice(token, &at);
             let float = catch_unwind(AssertUnwindSafe(|| bits_of(F::gather(&table, index).to_bits())));
             let int = catch_unwind(AssertUnwindSafe(|| bits_of(F::U32::gather(&[5; 7], index))));
+            let three = catch_unwind(AssertUnwindSafe(|| bits_of(F::gather_x3(&[[0.5; 3]; 7], index)[2].to_bits())));
             let four = catch_unwind(AssertUnwindSafe(|| bits_of(F::gather_x4(&[[0.5; 4]; 7], index)[3].to_bits())));
             assert_eq!((float.is_err(), int.is_err()), (self.1 > 6, self.1 > 6), "x{} index {}", F::WIDTH, self.1);
-            assert_eq!(four.is_err(), self.1 > 6, "x{} index {}", F::WIDTH, self.1);
+            assert_eq!((three.is_err(), four.is_err()), (self.1 > 6, self.1 > 6), "x{} index {}", F::WIDTH, self.1);
         }
     }
     let silent = std::panic::take_hook();

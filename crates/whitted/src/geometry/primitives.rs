@@ -23,9 +23,9 @@ pub enum Kind {
 /// Ties in t go to the lower number.
 #[derive(Clone, Debug, Default)]
 pub struct Primitives {
-    vertices: Vec<Vec3f>,
+    vertices: Vec<[f32; 3]>,
     triangles: Vec<[u32; 3]>,
-    normals: Vec<Vec3f>,
+    normals: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
     spheres: Vec<Sphere>,
     shapes: Vec<Shape>,
@@ -83,9 +83,10 @@ impl Primitives {
     ) -> Result<(), MeshError> {
         self.check_mesh(positions.len(), triangles, normals.len(), uvs.len())?;
         let first = self.vertices.len();
-        self.vertices.extend_from_slice(positions);
+        self.vertices.extend(positions.iter().map(|p| p.to_array()));
         self.triangles.extend(triangles.iter().map(|t| t.map(|index| index + first as u32)));
-        extend_attribute(&mut self.normals, first, normals, self.vertices.len(), Vec3f::ZERO);
+        let normals: Vec<_> = normals.iter().map(|n| n.to_array()).collect();
+        extend_attribute(&mut self.normals, first, &normals, self.vertices.len(), [0.0; 3]);
         extend_attribute(&mut self.uvs, first, uvs, self.vertices.len(), [0.0; 2]);
         Ok(())
     }
@@ -179,7 +180,7 @@ impl Primitives {
     /// Triangle `index`.
     #[inline(always)]
     pub fn triangle(&self, index: usize) -> Triangle {
-        Triangle { vertices: self.triangles[index].map(|vertex| self.vertices[vertex as usize]) }
+        Triangle { vertices: self.triangles[index].map(|vertex| self.vertices[vertex as usize].into()) }
     }
 
     /// Ask the memory for a triangle's vertex numbers or a sphere; nothing for any other number.
@@ -200,7 +201,7 @@ impl Primitives {
     }
 
     /// The vertices of all meshes, one after the other.
-    pub fn vertices(&self) -> &[Vec3f] {
+    pub fn vertices(&self) -> &[[f32; 3]] {
         &self.vertices
     }
 
@@ -217,7 +218,7 @@ impl Primitives {
 
     /// The vertices of all meshes, one after the other, to be moved; a tree over them must then be
     /// [refitted](crate::tree::Tree::refit) or built anew.
-    pub fn vertices_mut(&mut self) -> &mut [Vec3f] {
+    pub fn vertices_mut(&mut self) -> &mut [[f32; 3]] {
         &mut self.vertices
     }
 
@@ -231,10 +232,14 @@ impl Primitives {
         !self.normals.is_empty()
     }
 
-    /// The normals of the vertices of triangle `index`; only where [`has_normals`](Self::has_normals).
-    #[inline(always)]
-    pub(super) fn corner_normals(&self, index: usize) -> [Vec3f; 3] {
-        self.triangles[index].map(|vertex| self.normals[vertex as usize])
+    /// The numbers of the corners of all triangles.
+    pub(super) fn corners(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The normals of all vertices; empty if there are none.
+    pub(super) fn normals(&self) -> &[[f32; 3]] {
+        &self.normals
     }
 
     /// The spheres.
@@ -348,11 +353,11 @@ fn interpolate_uv(uvs: &[[f32; 2]], corners: [usize; 3], hit: &Hit) -> [f32; 2] 
 }
 
 /// The interpolated normal, turned to the side of `n_g`; `n_g` itself where there is none.
-fn interpolate_normal(normals: &[Vec3f], corners: [usize; 3], hit: &Hit, n_g: Vec3f) -> Vec3f {
+fn interpolate_normal(normals: &[[f32; 3]], corners: [usize; 3], hit: &Hit, n_g: Vec3f) -> Vec3f {
     if normals.is_empty() {
         return n_g;
     }
-    let [a, b, c] = corners.map(|i| normals[i]);
+    let [a, b, c] = corners.map(|i| Vec3f::from(normals[i]));
     if a == Vec3f::ZERO || b == Vec3f::ZERO || c == Vec3f::ZERO {
         return n_g;
     }

@@ -120,8 +120,8 @@ fn refine_triangles<S: Simd>(
     step: Range<usize>,
     mask: Mask<S>,
 ) {
-    let (o, d) = (vector(token, rays.origin, &step), vector(token, rays.direction, &step));
     let [a, b, c] = corners(token, primitives, load_ids(token, &hits.primitive[step.clone()]), mask);
+    let (o, d) = (vector(token, rays.origin, &step), vector(token, rays.direction, &step));
     let (zero, one) = (S::F64x8::splat(token, 0.0), S::F64x8::splat(token, 1.0));
     let (ab, ac, from_a) = (b - a, c - a, o - a);
     let p = d.cross(ac);
@@ -140,17 +140,16 @@ fn refine_triangles<S: Simd>(
 /// The three corners of the triangle in each lane of `mask`; of triangle 0 in others.
 #[inline(always)]
 fn corners<S: Simd>(token: S, primitives: &Primitives, found: Ids<S>, mask: Mask<S>) -> [Vec3<S::F64x8>; 3] {
-    let mut found_stored = [0; STEP];
-    Ids::<S>::select(mask, found, ids::<S>(token, 0)).store(&mut found_stored);
-    let point = S::F32x4::splat(token, 0.0);
-    let (mut a, mut b, mut c) = ([point; STEP], [point; STEP], [point; STEP]);
-    for lane in 0..STEP {
-        let vertices = primitives.triangle(found_stored[lane] as usize).vertices;
-        a[lane] = padded(token, vertices[0], 0.0);
-        b[lane] = padded(token, vertices[1], 0.0);
-        c[lane] = padded(token, vertices[2], 0.0);
-    }
-    [widened(token, a).0, widened(token, b).0, widened(token, c).0]
+    let [a, b, c] = Ids::<S>::gather_x3(primitives.corners(), Ids::<S>::select(mask, found, ids::<S>(token, 0)));
+    let vertices = primitives.vertices();
+    [corner::<S>(vertices, a), corner::<S>(vertices, b), corner::<S>(vertices, c)]
+}
+
+/// The vertices with these numbers.
+#[inline(always)]
+fn corner<S: Simd>(vertices: &[[f32; 3]], numbers: Ids<S>) -> Vec3<S::F64x8> {
+    let [x, y, z] = S::F32x8::gather_x3(vertices, numbers);
+    Vec3::new(S::F64x8::widen(x), S::F64x8::widen(y), S::F64x8::widen(z))
 }
 
 /// The vector twin of [`Sphere::refine`], for the lanes of `mask`.

@@ -136,15 +136,9 @@ impl Primitives {
     /// The vector twin of [`Triangle::surface`](super::Triangle::surface) and of the interpolation of normals.
     #[inline(always)]
     fn triangle_rows<S: Simd>(&self, token: S, hits: &HitRows, set: u32, out: &mut SurfaceRows) {
-        let mut records = [[S::F32x4::splat(token, 0.0); BLOCK]; 3];
-        for lane in 0..BLOCK {
-            let [a, b, c] = self.triangle(self.triangle_or_first(hits.primitive[lane])).vertices;
-            records[0][lane] = padded(token, a, 0.0);
-            records[1][lane] = padded(token, b, 0.0);
-            records[2][lane] = padded(token, c, 0.0);
-        }
-        let [a, b, c] = records;
-        let corners = [columns::<S>(token, a).0, columns::<S>(token, b).0, columns::<S>(token, c).0];
+        let numbers = self.corner_numbers(token, hits);
+        let [a, b, c] = gathered::<S>(self.vertices(), numbers);
+        let corners = [stored(a), stored(b), stored(c)];
         let (mut position, mut normal) = ([[0.0; BLOCK]; 3], [[0.0; BLOCK]; 3]);
         for at in [0, HALF] {
             let [a, b, c] = &corners;
@@ -157,35 +151,28 @@ impl Primitives {
             store::<S>(across / across.length_squared().sqrt(), &mut normal, at);
         }
         upright_where_flat(token, &mut normal);
-        let shading = self.shading_normals(token, hits, &normal);
+        let shading = self.shading_normals(token, hits, numbers, &normal);
         let error = error_bound::<S::F32x16>(token, largest(token, &position), extent(token, &corners));
         out.set(token, set, &position, &normal, &shading, error);
     }
 
-    /// The triangle with this number; the first if it is none, for lanes that hit something else.
+    /// The numbers of the corners of the triangles that were hit; of the first one in lanes that hit something else.
     #[inline(always)]
-    fn triangle_or_first(&self, primitive: u32) -> usize {
-        if primitive < self.first_sphere() { primitive as usize } else { 0 }
+    fn corner_numbers<S: Simd>(&self, token: S, hits: &HitRows) -> [Numbers<S>; 3] {
+        let id = Numbers::<S>::load(token, &hits.primitive);
+        let is_triangle = id.lt(Numbers::<S>::splat(token, self.first_sphere()));
+        Numbers::<S>::gather_x3(self.corners(), Numbers::<S>::select(is_triangle, id, Numbers::<S>::splat(token, 0)))
     }
 
     /// Interpolated normals, turned to the side of `n_g`; `n_g` itself where there is none.
     #[inline(always)]
-    fn shading_normals<S: Simd>(&self, token: S, hits: &HitRows, n_g: &[Row; 3]) -> [Row; 3] {
+    fn shading_normals<S: Simd>(&self, token: S, hits: &HitRows, numbers: [Numbers<S>; 3], n_g: &[Row; 3]) -> [Row; 3] {
         if !self.has_normals() {
             return *n_g;
         }
-        let mut records = [[S::F32x4::splat(token, 0.0); BLOCK]; 3];
-        for lane in 0..BLOCK {
-            let [a, b, c] = self.corner_normals(self.triangle_or_first(hits.primitive[lane]));
-            records[0][lane] = padded(token, a, 0.0);
-            records[1][lane] = padded(token, b, 0.0);
-            records[2][lane] = padded(token, c, 0.0);
-        }
-        let [a, b, c] = records;
-        let corners = [columns::<S>(token, a).0, columns::<S>(token, b).0, columns::<S>(token, c).0];
+        let [a, b, c] = gathered::<S>(self.normals(), numbers);
         let row = |row: &Row| S::F32x16::load(token, row);
-        let rows = |rows: &[Row; 3]| Vec3::new(row(&rows[0]), row(&rows[1]), row(&rows[2]));
-        let (a, b, c, n_g) = (rows(&corners[0]), rows(&corners[1]), rows(&corners[2]), rows(n_g));
+        let n_g = Vec3::new(row(&n_g[0]), row(&n_g[1]), row(&n_g[2]));
         let (u, v, zero) = (row(&hits.u), row(&hits.v), S::F32x16::splat(token, 0.0));
         let sum = a * (S::F32x16::splat(token, 1.0) - u - v) + b * u + c * v;
         let unit = sum / sum.length_squared().sqrt();
@@ -248,6 +235,18 @@ fn replace<L: F32Lanes<Array = Row>>(token: L::Token, mask: L::Mask, row: &mut R
 #[inline(always)]
 fn put(rows: &mut [Row; 3], lane: usize, value: Vec3f) {
     (rows[0][lane], rows[1][lane], rows[2][lane]) = (value.x, value.y, value.z);
+}
+
+type Numbers<S> = <<S as Simd>::F32x16 as F32Lanes>::U32;
+
+/// The vectors of each corner.
+#[inline(always)]
+fn gathered<S: Simd>(table: &[[f32; 3]], [a, b, c]: [Numbers<S>; 3]) -> [Vec3<S::F32x16>; 3] {
+    [
+        Vec3::from(S::F32x16::gather_x3(table, a)),
+        Vec3::from(S::F32x16::gather_x3(table, b)),
+        Vec3::from(S::F32x16::gather_x3(table, c)),
+    ]
 }
 
 /// A point and one more number.

@@ -55,9 +55,7 @@ impl RayScene {
     pub fn set_positions(&mut self, geometry: usize, positions: &[[f32; 3]]) -> Result<(), MoveError> {
         let kind = "vertices";
         let range = self.items(geometry, true, kind, positions.len())?;
-        for (vertex, &position) in self.primitives.vertices_mut()[range].iter_mut().zip(positions) {
-            *vertex = position.into();
-        }
+        self.primitives.vertices_mut()[range].copy_from_slice(positions);
         Ok(())
     }
 
