@@ -139,6 +139,7 @@ impl Primitives {
     }
 
     /// Number of bounded primitives: those that belong in a tree, numbers `0..bounded_count()`.
+    #[inline]
     pub fn bounded_count(&self) -> usize {
         self.len() - self.planes.len()
     }
@@ -163,16 +164,19 @@ impl Primitives {
     }
 
     /// Number of the first sphere.
+    #[inline]
     pub(crate) fn first_sphere(&self) -> u32 {
         self.triangles.len() as u32
     }
 
     /// Number of the first shape.
+    #[inline]
     pub(crate) fn first_shape(&self) -> u32 {
         self.first_sphere() + self.spheres.len() as u32
     }
 
     /// Number of the first plane.
+    #[inline]
     pub(crate) fn first_plane(&self) -> u32 {
         self.bounded_count() as u32
     }

@@ -241,6 +241,7 @@ impl Triangle {
     /// `t` is the value found by the walk. The weights are kept within the triangle, hence t within its depth, and
     /// within the ray's range; where even `f64` sees no area the given `t` stays. Error of t: 2⁻²⁴ relative from
     /// rounding, plus 2⁻⁵⁰ times the condition of the plane.
+    #[inline(always)]
     pub(super) fn refine(&self, ray: &Ray, t: f32) -> Refined {
         let (o, d) = (ray.origin.to_f64(), ray.direction.to_f64());
         let [a, b, c] = self.vertices.map(Vec3f::to_f64);
@@ -260,6 +261,7 @@ impl Triangle {
 
 impl Sphere {
     /// Recompute the parameter of a hit in double precision.
+    #[inline(always)]
     pub(super) fn refine(&self, ray: &Ray, t: f32) -> f32 {
         let (o, d) = (ray.origin.to_f64() - self.center.to_f64(), ray.direction.to_f64());
         let inverse = 1.0 / d.length_squared();

@@ -17,6 +17,7 @@ thread_local! {
 }
 
 /// Run `work` with this thread's memory; a query inside a query gets new memory.
+#[inline]
 pub(super) fn with<T>(work: impl FnOnce(&mut Memory) -> T) -> T {
     // A thread that is being torn down has none any more.
     let mut memory = MEMORY.try_with(Cell::take).ok().flatten().unwrap_or_default();

@@ -2,8 +2,8 @@
 
 use super::RayScene;
 use super::memory::{self, Memory};
-use crate::ray::{Hit, MaskedRay, Ray, Rays};
-use crate::tree::{Filter, Occlusion, WalkKind};
+use crate::ray::{Hit, MaskedRay, Ray};
+use crate::tree::{Filter, WalkKind};
 
 /// Where [`RayScene::contains`] looks: no axis, no diagonal.
 const OUTWARD: [f32; 3] = [0.37, 0.61, 0.83];
@@ -24,7 +24,7 @@ impl RayScene {
     pub fn closest_hit(&self, ray: impl Into<MaskedRay>) -> Option<Hit> {
         let MaskedRay { ray, mask } = ray.into();
         let sees = |_: usize, primitive: u32| self.sees(mask, primitive);
-        self.closest_hit_by(&ray, self.filter(&ray, mask, &sees))
+        self.closest_hit_by(&ray, self.filter(mask, &sees))
     }
 
     /// The first hit on a primitive for which `sees` holds, as if there were no others: all but the one that a ray
@@ -56,7 +56,7 @@ impl RayScene {
     pub fn occluded(&self, ray: impl Into<MaskedRay>) -> bool {
         let MaskedRay { ray, mask } = ray.into();
         let sees = |_: usize, primitive: u32| self.sees(mask, primitive);
-        self.occluded_by(&ray, self.filter(&ray, mask, &sees))
+        self.occluded_by(&ray, self.filter(mask, &sees))
     }
 
     /// Whether a primitive for which `sees` holds lies within the range of a ray; as
@@ -113,8 +113,9 @@ impl RayScene {
     }
 
     /// The filter for a ray with a mask; none if it sees everything.
-    fn filter<'f>(&self, ray: &Ray, mask: u32, sees: Filter<'f>) -> Option<Filter<'f>> {
-        (!self.all_seen(&Rays::from(ray).with_mask(mask))).then_some(sees)
+    #[inline]
+    fn filter<'f>(&self, mask: u32, sees: Filter<'f>) -> Option<Filter<'f>> {
+        (mask != u32::MAX || !self.all_seen_by_all()).then_some(sees)
     }
 
     fn closest_hit_by(&self, ray: &Ray, filter: Option<Filter<'_>>) -> Option<Hit> {
@@ -125,12 +126,7 @@ impl RayScene {
     }
 
     fn occluded_by(&self, ray: &Ray, filter: Option<Filter<'_>>) -> bool {
-        memory::with(|memory| {
-            let mut out = [Occlusion::Clear];
-            let query = self.query(WalkKind::Single);
-            query.occluded_into(ray.into(), None, filter, &mut out, &mut memory.scratch);
-            out[0] == Occlusion::Blocked
-        })
+        memory::with(|memory| self.query(WalkKind::Single).is_occluded(ray, filter, &mut memory.scratch))
     }
 
     fn with_all_hits<T>(&self, MaskedRay { ray, mask }: MaskedRay, use_hits: impl FnOnce(&[Hit]) -> T) -> T {
@@ -138,7 +134,7 @@ impl RayScene {
         memory::with(|Memory { scratch, lists, .. }| {
             lists.clear();
             let query = self.query(WalkKind::Single);
-            query.all_hits(&ray, self.filter(&ray, mask, &sees), lists, scratch);
+            query.all_hits(&ray, self.filter(mask, &sees), lists, scratch);
             use_hits(lists.of(0))
         })
     }

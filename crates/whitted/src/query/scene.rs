@@ -139,13 +139,20 @@ impl RayScene {
         policy::choose(WalkKind::Auto, &self.tree, &self.primitives, rays)
     }
 
+    #[inline]
     pub(super) fn query(&self, walk: WalkKind) -> Query<'_> {
         Query { tree: &self.tree, primitives: &self.primitives, level: self.level, walk }
     }
 
     /// Whether every one of `rays` sees everything.
     pub(super) fn all_seen(&self, rays: &Rays<'_>) -> bool {
-        rays.mask == Row::All(u32::MAX) && self.parts.iter().all(|part| part.mask != 0)
+        rays.mask == Row::All(u32::MAX) && self.all_seen_by_all()
+    }
+
+    /// Whether a ray with every bit in its mask sees everything.
+    #[inline]
+    pub(super) fn all_seen_by_all(&self) -> bool {
+        self.parts.iter().all(|part| part.mask != 0)
     }
 
     /// Whether a ray with `mask` sees a primitive.

@@ -21,6 +21,11 @@ impl<G: Goal> Goal for Filtered<'_, G> {
     const ENDS_RAYS: bool = G::ENDS_RAYS;
 
     #[inline(always)]
+    fn found(&self, ray: usize) -> u32 {
+        self.goal.found(ray)
+    }
+
+    #[inline(always)]
     fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32> {
         match (self.filter)(self.first + ray, primitive) {
             true => self.goal.offer(ray, t, primitive, limit),

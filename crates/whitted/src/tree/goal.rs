@@ -15,6 +15,12 @@ pub(crate) trait Goal {
     /// the range shrinks; negative infinity ends the ray.
     fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32>;
 
+    /// The primitive that a ray has found so far, where the goal keeps one; [`NONE`] for none.
+    #[inline(always)]
+    fn found(&self, _ray: usize) -> u32 {
+        NONE
+    }
+
     /// Sixteen rays with these numbers, which pass by one primitive after the other, meet one where `hit` is set; returns
     /// their new limits. What they find may stay in `found`, at first [`NONE`], until it is settled.
     #[inline(always)]
@@ -102,6 +108,11 @@ pub(crate) struct Closest<'a> {
 }
 
 impl Goal for Closest<'_> {
+    #[inline(always)]
+    fn found(&self, ray: usize) -> u32 {
+        self.primitive[ray]
+    }
+
     #[inline(always)]
     fn offer(&mut self, ray: usize, t: f32, primitive: u32, limit: f32) -> Option<f32> {
         let better = t < limit || (t == limit && primitive < self.primitive[ray]);

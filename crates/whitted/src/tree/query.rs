@@ -91,17 +91,39 @@ impl Query<'_> {
     }
 
     /// The first hit of one ray that the filter lets through.
+    #[inline]
     pub(crate) fn closest_hit_of(&self, ray: &Ray, filter: Option<Filter<'_>>, scratch: &mut Scratch) -> Hit {
         let mut primitive = [NONE];
         let goal = Closest { primitive: &mut primitive };
-        self.walk_filtered(ray.into(), 0..1, goal, filter, scratch);
-        if primitive[0] == NONE {
-            return Hit::MISS;
+        match filter {
+            None => self.hit_of(ray, goal, scratch),
+            Some(filter) => self.hit_of(ray, Filtered { goal, first: 0, filter }, scratch),
         }
-        let mut t = [Hit::MISS.t];
-        scratch.rays.found(self.level, &primitive, &mut t);
-        let refined = self.primitives.refine(ray, t[0], primitive[0]);
-        Hit { t: refined.t, u: refined.u, v: refined.v, primitive: primitive[0], instance: NONE }
+    }
+
+    #[inline(always)]
+    fn hit_of<G: Goal>(&self, ray: &Ray, mut goal: G, scratch: &mut Scratch) -> Hit {
+        let (tree, primitives, goal) = (self.tree, self.primitives, &mut goal);
+        if tree.kind() == TreeKind::None {
+            let (_, t) = self.try_each(ray, goal, scratch);
+            return walk::refined(primitives, ray, t, goal.found(0));
+        }
+        simd::dispatch(
+            self.level,
+            walk::HitAlone(walk::Alone { tree, primitives, ray, lists: &mut scratch.lists, goal }),
+        )
+    }
+
+    /// Whether anything that the filter lets through lies within the range of one ray.
+    #[inline]
+    pub(crate) fn is_occluded(&self, ray: &Ray, filter: Option<Filter<'_>>, scratch: &mut Scratch) -> bool {
+        let mut occlusion = [Occlusion::Clear];
+        let mut goal = Any { occlusion: &mut occlusion, opaque: None };
+        match filter {
+            None => self.walk_one(ray, &mut goal, scratch),
+            Some(filter) => self.walk_one(ray, &mut Filtered { goal, first: 0, filter }, scratch),
+        };
+        occlusion[0] == Occlusion::Blocked
     }
 
     /// The first hit of each ray that comes after `after`, in the order of (t, primitive); advances `after` to it.
@@ -192,6 +214,23 @@ impl Query<'_> {
         }
     }
 
+    /// Walk one ray; returns the upper end of its range that is left: the t of what was found.
+    #[inline(always)]
+    fn walk_one<G: Goal>(&self, ray: &Ray, goal: &mut G, scratch: &mut Scratch) -> (Counts, f32) {
+        let (tree, primitives) = (self.tree, self.primitives);
+        if tree.kind() == TreeKind::None {
+            return self.try_each(ray, goal, scratch);
+        }
+        simd::dispatch(self.level, walk::Alone { tree, primitives, ray, lists: &mut scratch.lists, goal })
+    }
+
+    /// As [`walk_one`](Self::walk_one), where there is no tree.
+    #[inline(never)]
+    fn try_each<G: Goal>(&self, ray: &Ray, goal: &mut G, scratch: &mut Scratch) -> (Counts, f32) {
+        let counts = self.walk(ray.into(), 0..1, goal, scratch);
+        (counts, scratch.rays.limit(0))
+    }
+
     /// Walk one chunk: planes first, since they lie outside the tree and shorten the rays, then the tree.
     pub(super) fn walk<G: Goal>(
         &self,
@@ -200,8 +239,13 @@ impl Query<'_> {
         goal: &mut G,
         scratch: &mut Scratch,
     ) -> Counts {
-        let Scratch { rays: prepared, lists, .. } = scratch;
         let first = chunk.start;
+        if chunk.len() == 1 && self.tree.kind() != TreeKind::None {
+            let (counts, limit) = self.walk_one(&rays.get(first), goal, scratch);
+            scratch.rays.walked_alone(limit);
+            return counts;
+        }
+        let Scratch { rays: prepared, lists, .. } = scratch;
         let sort = RaySort { count: chunk.len(), origins: Origins::Unknown };
         prepared.begin(self.level, self.tree, self.primitives, rays, chunk);
         let (tree, primitives) = (self.tree, self.primitives);

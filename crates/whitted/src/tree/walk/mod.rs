@@ -3,12 +3,14 @@
 //! All are generic over the instruction set and over the [`Goal`], and all offer the same candidates.
 
 mod abreast;
+mod alone;
 mod frustum;
 mod prepared;
 mod single;
 mod slabs;
 mod stream;
 
+pub(super) use alone::{Alone, HitAlone, refined};
 pub(super) use frustum::PACKET;
 pub(super) use prepared::PreparedRays;
 pub(crate) use prepared::sound;
@@ -17,12 +19,14 @@ pub(super) use stream::Lists;
 
 use super::Tree;
 use super::goal::Goal;
-use super::leaf::LeafKind;
+use super::leaf::{LeafKind, ShapeBlock};
 use super::policy::Way;
 use super::query::Counts;
-use crate::geometry::{Crossings, Primitives};
-use crate::ray::Rays;
+use crate::geometry::sphere::SphereRay;
+use crate::geometry::{Crossings, Primitives, ShearedRay};
+use crate::ray::{Ray, Rays};
 use simd::{Kernel, Simd};
+use std::ops::Range;
 
 /// One chunk of rays on its way through a tree: the kernel that is dispatched.
 pub(super) struct Walk<'a, G> {
@@ -43,11 +47,6 @@ impl<G: Goal> Kernel for Walk<'_, G> {
     #[inline(always)]
     fn run<S: Simd>(mut self, token: S) -> Counts {
         let mut counts = Counts::default();
-        if self.rays.len() == 1 {
-            self.record(token, Packets::default());
-            single::alone(token, &mut self, &mut counts);
-            return counts;
-        }
         let walked = self.packets(token, &mut counts);
         self.record(token, walked);
         let together = if self.way == Way::OneByOne { 1 } else { usize::MAX };
@@ -121,38 +120,111 @@ impl<G: Goal> Walk<'_, G> {
         count: usize,
         counts: &mut Counts,
     ) {
-        counts.primitive_tests += (count * super::leaf::BLOCK) as u64;
-        let ray = self.rays.node(index);
-        let (t_min, mut limit) = (ray.t_min(), ray.limit());
+        let mut limit = self.rays.node(index).limit();
+        let ray = OfMany { rays: self.rays, index };
         let blocks = first..first + count;
-        match kind {
-            LeafKind::Triangles => {
-                let ray = self.rays.sheared(index);
-                for block in &self.tree.leaves.triangles[blocks] {
-                    block.intersect(token, self.goal, index, &ray, t_min, &mut limit);
-                }
-            }
-            LeafKind::Spheres => {
-                let ray = self.rays.sphere(index);
-                for block in &self.tree.leaves.spheres[blocks] {
-                    block.intersect(token, self.goal, index, &ray, t_min, &mut limit);
-                }
-            }
-            LeafKind::Shapes => shapes(self, index, blocks, &mut limit),
-        }
+        let query = LeafQuery { tree: self.tree, primitives: self.primitives, goal: self.goal, index };
+        intersect_leaf(token, query, kind, blocks, &ray, &mut limit, counts);
         self.rays.shorten(index, limit);
+    }
+}
+
+/// A ray in the forms that leaves want.
+trait LeafRay {
+    /// Lower end of the range.
+    fn t_min(&self) -> f32;
+    /// In the tree's scale; only where there are triangles.
+    fn sheared(&self) -> ShearedRay;
+    /// In the tree's scale; only where there are spheres.
+    fn sphere(&self) -> SphereRay;
+    /// As the caller gave it; only where there are shapes.
+    fn original(&self) -> Ray;
+}
+
+/// A ray of a chunk.
+struct OfMany<'a> {
+    rays: &'a PreparedRays,
+    index: usize,
+}
+
+impl LeafRay for OfMany<'_> {
+    #[inline(always)]
+    fn t_min(&self) -> f32 {
+        self.rays.node(self.index).t_min()
+    }
+
+    #[inline(always)]
+    fn sheared(&self) -> ShearedRay {
+        self.rays.sheared(self.index)
+    }
+
+    #[inline(always)]
+    fn sphere(&self) -> SphereRay {
+        self.rays.sphere(self.index)
+    }
+
+    fn original(&self) -> Ray {
+        self.rays.ray(self.index)
+    }
+}
+
+/// Where the leaves and what is in them are, and who asks.
+struct LeafQuery<'a, G> {
+    tree: &'a Tree,
+    primitives: &'a Primitives,
+    goal: &'a mut G,
+    /// The number by which the goal knows the ray.
+    index: usize,
+}
+
+/// Test one ray against the blocks of a leaf.
+#[inline(always)]
+fn intersect_leaf<S: Simd, G: Goal>(
+    token: S,
+    query: LeafQuery<'_, G>,
+    kind: LeafKind,
+    blocks: Range<usize>,
+    ray: &impl LeafRay,
+    limit: &mut f32,
+    counts: &mut Counts,
+) {
+    counts.primitive_tests += (blocks.len() * super::leaf::BLOCK) as u64;
+    let LeafQuery { tree, primitives, goal, index } = query;
+    match kind {
+        LeafKind::Triangles => {
+            let (t_min, ray) = (ray.t_min(), ray.sheared());
+            for block in &tree.leaves.triangles[blocks] {
+                block.intersect(token, goal, index, &ray, t_min, limit);
+            }
+        }
+        LeafKind::Spheres => {
+            let (t_min, ray) = (ray.t_min(), ray.sphere());
+            for block in &tree.leaves.spheres[blocks] {
+                block.intersect(token, goal, index, &ray, t_min, limit);
+            }
+        }
+        // A ray from so far away that its offsets overflow enters unused lanes too, whose leaf has no blocks.
+        LeafKind::Shapes => {
+            let blocks = tree.leaves.shapes.get(blocks).unwrap_or_default();
+            shapes(primitives, goal, index, blocks, &ray.original(), limit);
+        }
     }
 }
 
 /// Test one ray against the primitives of shape blocks, one by one.
 #[inline(never)]
-fn shapes<G: Goal>(walk: &mut Walk<'_, G>, index: usize, blocks: std::ops::Range<usize>, limit: &mut f32) {
-    // A ray from so far away that its offsets overflow enters unused lanes too, whose leaf has no blocks.
-    for id in walk.tree.leaves.shapes.get(blocks).unwrap_or_default().iter().flat_map(|block| block.ids()) {
-        let ray = walk.rays.ray(index);
-        let shape = &walk.primitives.shapes()[(id - walk.primitives.first_shape()) as usize];
+fn shapes<G: Goal>(
+    primitives: &Primitives,
+    goal: &mut G,
+    index: usize,
+    blocks: &[ShapeBlock],
+    ray: &Ray,
+    limit: &mut f32,
+) {
+    for id in blocks.iter().flat_map(|block| block.ids()) {
+        let shape = &primitives.shapes()[(id - primitives.first_shape()) as usize];
         let crossings = shape.crossings(ray.origin.to_f64(), ray.direction.to_f64());
-        offer_crossings(walk.goal, index, id, crossings, ray.t_min, limit);
+        offer_crossings(goal, index, id, crossings, ray.t_min, limit);
     }
 }
 
@@ -178,21 +250,32 @@ pub(crate) fn offer_crossings<G: Goal>(
 /// Offer the unbounded planes, which are in no tree.
 pub(super) fn planes<G: Goal>(primitives: &Primitives, rays: &mut PreparedRays, goal: &mut G) -> Counts {
     let mut counts = Counts::default();
-    if primitives.planes().is_empty() {
-        return counts;
-    }
-    for index in 0..rays.len() {
-        let ray = rays.ray(index);
-        for (id, plane) in (primitives.first_plane()..).zip(primitives.planes()) {
+    if !primitives.planes().is_empty() {
+        for index in 0..rays.len() {
             let mut limit = rays.limit(index);
-            if limit < ray.t_min {
-                break;
-            }
-            counts.primitive_tests += 1;
-            let crossings = plane.crossings(ray.origin.to_f64(), ray.direction.to_f64());
-            offer_crossings(goal, index, id, crossings, ray.t_min, &mut limit);
+            planes_of_one(primitives, goal, index, &rays.ray(index), &mut limit, &mut counts);
             rays.set_limit(index, limit);
         }
     }
     counts
+}
+
+/// Offer the planes to one ray.
+#[inline(never)]
+fn planes_of_one<G: Goal>(
+    primitives: &Primitives,
+    goal: &mut G,
+    index: usize,
+    ray: &Ray,
+    limit: &mut f32,
+    counts: &mut Counts,
+) {
+    for (id, plane) in (primitives.first_plane()..).zip(primitives.planes()) {
+        if *limit < ray.t_min {
+            break;
+        }
+        counts.primitive_tests += 1;
+        let crossings = plane.crossings(ray.origin.to_f64(), ray.direction.to_f64());
+        offer_crossings(goal, index, id, crossings, ray.t_min, limit);
+    }
 }

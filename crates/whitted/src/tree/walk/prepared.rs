@@ -3,6 +3,7 @@
 mod one;
 mod records;
 
+pub(super) use one::OneRay;
 pub(super) use records::Records;
 
 use super::frustum::PACKET;
@@ -121,10 +122,15 @@ impl PreparedRays {
             self.original.extend(range.clone().map(|index| rays.get(index)));
         }
         self.limit.resize(range.len().next_multiple_of(STEP), f32::NEG_INFINITY);
-        match range.len() {
-            1 => self.begin_one(tree, &rays.get(range.start)),
-            _ => simd::dispatch(level, Begin { prepared: self, tree, rays, range }),
-        }
+        simd::dispatch(level, Begin { prepared: self, tree, rays, range });
+    }
+
+    /// Take the only ray of a chunk when it has been walked by itself, up to `limit`.
+    pub(in crate::tree) fn walked_alone(&mut self, limit: f32) {
+        self.len = 1;
+        self.recorded = Packets::default();
+        self.limit.clear();
+        self.limit.push(limit);
     }
 
     /// Number of rays.

@@ -1,4 +1,4 @@
-//! Single rays through the wide tree: alone, and in turns as the tail of the stream.
+//! Single rays through the wide tree, in turns: the tail of the stream.
 
 use super::Walk;
 use super::slabs::Slabs;
@@ -17,13 +17,19 @@ pub(super) struct Stack {
 impl Stack {
     /// Make room for `ways` walks through a tree of `depth` levels, and say how much each has: each level leaves at most
     /// 15 children behind and the last one stores whole registers.
+    #[inline(always)]
     pub(super) fn reserve(&mut self, depth: usize, ways: usize) -> usize {
         let room = depth * (WIDTH - 1) + 2 * WIDTH;
-        if self.entry.len() < ways * room {
-            self.entry.resize(ways * room, 0.0);
-            self.child.resize(ways * room, 0);
+        if self.child.len() < ways * room {
+            self.grow(ways * room);
         }
         room
+    }
+
+    #[cold]
+    fn grow(&mut self, len: usize) {
+        self.entry.resize(len, 0.0);
+        self.child.resize(len, 0);
     }
 }
 
@@ -36,20 +42,6 @@ struct Path {
     index: usize,
     base: usize,
     top: usize,
-}
-
-/// Follow the only ray there is, without the lists that many would need.
-#[inline(always)]
-pub(super) fn alone<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, counts: &mut Counts) {
-    let ray = walk.rays.node(0);
-    if !(ray.limit() >= ray.t_min()) {
-        return;
-    }
-    let mut stack = std::mem::take(&mut walk.lists.stack);
-    stack.reserve(walk.tree.depth(), 1);
-    let mut path = Path::new(walk, &mut stack, 0, Child::interior(0), 0);
-    while path.step(token, walk, &mut stack, counts) {}
-    walk.lists.stack = stack;
 }
 
 /// Follow the rays `ids`, at most [`WAYS`], through everything under `start`, a step of each in turn: while one waits for

@@ -1,6 +1,7 @@
 //! The box test: one ray against the sixteen boxes of a node.
 
 use super::prepared::NodeRay;
+use crate::geometry::splat;
 use crate::tree::node::Node;
 use simd::{F32Lanes, MaskLanes, Simd};
 
@@ -9,6 +10,15 @@ pub(super) struct Slabs<S: Simd> {
     near: [S::F32x16; 3],
     far: [S::F32x16; 3],
     boxes: u16,
+}
+
+/// What the box test needs of a ray, in all lanes: as [`NodeRay`], without the limit.
+pub(super) struct SlabRay<F> {
+    pub(super) inverse: [F; 3],
+    pub(super) near: [F; 3],
+    /// As `near`, for the planes where the ray leaves.
+    pub(super) far: [F; 3],
+    pub(super) t_min: F,
 }
 
 impl<S: Simd> Slabs<S> {
@@ -25,16 +35,24 @@ impl<S: Simd> Slabs<S> {
 
     /// The boxes that the ray enters within its range, and where it enters them.
     ///
-    /// `far_offset` is the ray's offset for the planes where it leaves. A NaN from a plane is passed over.
+    /// `far_offset` is the ray's offset for the planes where it leaves.
     #[inline(always)]
     pub(super) fn enter(&self, token: S, ray: NodeRay<'_>, far_offset: [f32; 3]) -> (u16, S::F32x16) {
-        let inverse = crate::geometry::splat(token, ray.inverse());
-        let near = crate::geometry::splat(token, ray.near());
-        let far = crate::geometry::splat(token, far_offset);
-        let (t_min, limit) = (S::F32x16::splat(token, ray.t_min()), S::F32x16::splat(token, ray.limit()));
-        let [x, y, z] = met(self.near, inverse, near);
-        let entry = x.max(y).max(z.max(t_min));
-        let [x, y, z] = met(self.far, inverse, far);
+        let in_lanes = SlabRay {
+            inverse: splat(token, ray.inverse()),
+            near: splat(token, ray.near()),
+            far: splat(token, far_offset),
+            t_min: S::F32x16::splat(token, ray.t_min()),
+        };
+        self.entered_by(&in_lanes, S::F32x16::splat(token, ray.limit()))
+    }
+
+    /// As [`enter`](Self::enter), for a ray that is in lanes. A NaN from a plane is passed over.
+    #[inline(always)]
+    pub(super) fn entered_by(&self, ray: &SlabRay<S::F32x16>, limit: S::F32x16) -> (u16, S::F32x16) {
+        let [x, y, z] = met(self.near, ray.inverse, ray.near);
+        let entry = x.max(y).max(z.max(ray.t_min));
+        let [x, y, z] = met(self.far, ray.inverse, ray.far);
         let exit = x.min(y).min(z.min(limit));
         (entry.le(exit).bits() as u16 & self.boxes, entry)
     }

@@ -1,72 +1,109 @@
-//! A single ray, prepared in plain Rust: sixteen lanes and their transposition cost several times as much as one needs.
+//! A single ray, prepared by itself: sixteen lanes and their transposition cost several times as much as one needs.
 //!
-//! The same formulas as for sixteen: the functions of lanes, at one lane.
+//! The same formulas as for sixteen: the functions of lanes, with the axes as lanes where that pays.
 
-use super::records::{Records, offsets, reciprocal, sign};
-use super::{PreparedRays, distance, sound};
-use crate::geometry::ShearedRay;
+use super::super::slabs::SlabRay;
+use super::records::{offsets, reciprocal};
+use super::{distance, sound};
 use crate::geometry::sphere::SphereRay;
+use crate::geometry::triangle::dominant_axis;
+use crate::geometry::{Primitives, ShearedRay, splat};
 use crate::math::{Vec3, Vec3f};
 use crate::ray::Ray;
 use crate::tree::Tree;
-use simd::{F32Lanes, MaskLanes, Octet, Scalar, ScalarF32, U32Lanes};
+use simd::{F32Lanes, MaskLanes, Scalar, ScalarF32, Simd};
 
 type One = ScalarF32<1>;
 
-fn lane(value: f32) -> One {
-    One::splat(Scalar, value)
+/// A ray in the forms that nodes and leaves want, by value.
+pub(in crate::tree::walk) struct OneRay<S: Simd> {
+    pub(in crate::tree::walk) slabs: SlabRay<S::F32x16>,
+    /// Signs of the direction: bit a is set if component a is negative.
+    pub(in crate::tree::walk) octant: usize,
+    /// Only where there are triangles.
+    pub(in crate::tree::walk) sheared: ShearedRay,
+    /// Only where there are spheres.
+    pub(in crate::tree::walk) sphere: SphereRay,
 }
 
+impl<S: Simd> OneRay<S> {
+    /// Prepare a ray; none if it hits nothing.
+    #[inline(always)]
+    pub(in crate::tree::walk) fn new(token: S, tree: &Tree, primitives: &Primitives, ray: &Ray) -> Option<Self> {
+        let (origin, direction) = (ray.origin * tree.scale(), ray.direction * tree.scale());
+        let (o, d) = (scalars(origin), scalars(direction));
+        if !sound(Scalar, o, d).any() {
+            return None;
+        }
+        let inverse = reciprocal(token, axes(token, direction));
+        let slack = S::F32x4::splat(token, value(tree.slack(Scalar, distance(o))));
+        let (near, far) = offsets(axes(token, origin), inverse, slack);
+        let (mut sheared, mut sphere) = (ShearedRay::default(), SphereRay::default());
+        if primitives.triangle_count() > 0 {
+            sheared = sheared_ray(token, origin, direction);
+        }
+        if !primitives.spheres().is_empty() {
+            sphere = SphereRay::new(origin, direction);
+        }
+        Some(Self {
+            slabs: SlabRay {
+                inverse: splat(token, parts::<S>(inverse)),
+                near: splat(token, parts::<S>(near)),
+                far: splat(token, parts::<S>(far)),
+                t_min: S::F32x16::splat(token, ray.t_min),
+            },
+            octant: (inverse.lt(S::F32x4::splat(token, 0.0)).bits() & 7) as usize,
+            sheared,
+            sphere,
+        })
+    }
+}
+
+/// The twin of [`ShearedRay::new`], without a branch.
+#[inline(always)]
+fn sheared_ray<S: Simd>(token: S, origin: Vec3f, direction: Vec3f) -> ShearedRay {
+    let axis = dominant_axis(direction);
+    let o = renamed(token, axis, axes(token, origin));
+    let d = renamed(token, axis, axes(token, direction));
+    let [.., dz] = parts::<S>(d);
+    let only_z = <S::F32x4 as F32Lanes>::Mask::from_bits(token, 1 << 2);
+    let numerator = S::F32x4::select(only_z, S::F32x4::splat(token, 1.0), d);
+    ShearedRay::from_parts(parts::<S>(o), parts::<S>(numerator / S::F32x4::splat(token, dz)), axis as u32)
+}
+
+/// The components in the order in which they follow each other after `axis`, as [`renamed`](crate::geometry::triangle::renamed).
+#[inline(always)]
+fn renamed<S: Simd>(token: S, axis: usize, v: S::F32x4) -> S::F32x4 {
+    let turned = token.yzx(v);
+    let (is_x, is_z) = (all_if(token, axis == 0), all_if(token, axis == 2));
+    S::F32x4::select(is_z, v, S::F32x4::select(is_x, turned, token.yzx(turned)))
+}
+
+#[inline(always)]
+fn all_if<S: Simd>(token: S, set: bool) -> <S::F32x4 as F32Lanes>::Mask {
+    <S::F32x4 as F32Lanes>::Mask::from_bits(token, 0u32.wrapping_sub(u32::from(set)))
+}
+
+#[inline(always)]
+fn axes<S: Simd>(token: S, v: Vec3f) -> S::F32x4 {
+    S::F32x4::load(token, &[v.x, v.y, v.z, 1.0])
+}
+
+#[inline(always)]
+fn parts<S: Simd>(v: S::F32x4) -> [f32; 3] {
+    let mut lanes = [0.0; 4];
+    v.store(&mut lanes);
+    [lanes[0], lanes[1], lanes[2]]
+}
+
+#[inline(always)]
+fn scalars(v: Vec3f) -> Vec3<One> {
+    Vec3::new(One::splat(Scalar, v.x), One::splat(Scalar, v.y), One::splat(Scalar, v.z))
+}
+
+#[inline(always)]
 fn value(lane: One) -> f32 {
     let mut out = [0.0];
     lane.store(&mut out);
     out[0]
-}
-
-impl PreparedRays {
-    /// [`begin`](Self::begin) for one ray.
-    pub(super) fn begin_one(&mut self, tree: &Tree, ray: &Ray) {
-        let scaled = |v: Vec3f| (v * tree.scale()).map(lane);
-        let (origin, direction) = (scaled(ray.origin), scaled(ray.direction));
-        self.limit[0] = if sound(Scalar, origin, direction).any() { ray.t_max } else { f32::NEG_INFINITY };
-        self.any_slack = value(tree.slack(Scalar, distance(origin))) > 0.0;
-    }
-
-    /// [`record`](Self::record) for one ray.
-    pub(super) fn record_one(&mut self, from: &Records<'_>) {
-        let (ray, scale) = (from.rays.get(from.start), from.tree.scale());
-        let (origin, direction) = (ray.origin * scale, ray.direction * scale);
-        self.record_node(from.tree, origin.map(lane), direction.map(lane), ray.t_min);
-        if from.primitives.triangle_count() > 0 {
-            let ShearedRay { origin: [ox, oy, oz], shear: [sx, sy, sz], axis, .. } = ShearedRay::new(origin, direction);
-            self.sheared[0] = Octet([ox, oy, oz, sx, sy, sz, f32::from_bits(axis), 0.0]);
-        }
-        if !from.primitives.spheres().is_empty() {
-            let SphereRay { origin: [ox, oy, oz], direction: [dx, dy, dz], inverse_length_squared, .. } =
-                SphereRay::new(origin, direction);
-            self.spheres[0] = Octet([ox, oy, oz, dx, dy, dz, inverse_length_squared, 0.0]);
-        }
-        self.recorded.insert(0);
-    }
-
-    fn record_node(&mut self, tree: &Tree, origin: Vec3<One>, direction: Vec3<One>, t_min: f32) {
-        let inverse = Vec3::new(
-            reciprocal(Scalar, direction.x),
-            reciprocal(Scalar, direction.y),
-            reciprocal(Scalar, direction.z),
-        );
-        let slack = tree.slack(Scalar, distance(origin));
-        let x = offsets(origin.x, inverse.x, slack);
-        let y = offsets(origin.y, inverse.y, slack);
-        let z = offsets(origin.z, inverse.z, slack);
-        let [ix, iy, iz, nx, ny, nz] = [inverse.x, inverse.y, inverse.z, x.0, y.0, z.0].map(value);
-        self.nodes[0] = Octet([ix, iy, iz, nx, ny, nz, t_min, self.limit[0]]);
-        if self.any_slack {
-            self.far[0] = [x.1, y.1, z.1].map(value);
-        }
-        let octant = sign(inverse.x) | sign(inverse.y).shl::<1>() | sign(inverse.z).shl::<2>();
-        let mut lanes = [0];
-        octant.store(&mut lanes);
-        self.octant[0] = lanes[0] as u8;
-    }
 }

@@ -40,9 +40,6 @@ impl PreparedRays {
     /// Make the records of packet `packet`.
     #[inline(always)]
     pub(in crate::tree::walk) fn record<S: Simd>(&mut self, token: S, from: &Records<'_>, packet: usize) {
-        if self.len == 1 {
-            return self.record_one(from);
-        }
         let scale = S::F32x16::splat(token, from.tree.scale());
         let range = self.packet(packet);
         for first in range.clone().step_by(STEP) {
@@ -165,7 +162,7 @@ fn grow<T: Clone + Default>(elements: &mut Vec<T>, len: usize) {
 
 /// The sign bit as 0 or 1.
 #[inline(always)]
-pub(super) fn sign<F: F32Lanes>(component: F) -> F::U32 {
+fn sign<F: F32Lanes>(component: F) -> F::U32 {
     component.to_bits().shr::<31>()
 }
 
