@@ -30,20 +30,21 @@ impl<S: Simd> OneRay<S> {
     /// Prepare a ray; none if it hits nothing.
     #[inline(always)]
     pub(in crate::tree::walk) fn new(token: S, tree: &Tree, primitives: &Primitives, ray: &Ray) -> Option<Self> {
-        let (origin, direction) = (ray.origin * tree.scale(), ray.direction * tree.scale());
-        let (o, d) = (scalars(origin), scalars(direction));
-        if !sound(Scalar, o, d).any() {
+        let scale = S::F32x4::splat(token, tree.scale());
+        let (origin, direction) = (axes(token, ray.origin) * scale, axes(token, ray.direction) * scale);
+        let (o, d) = (parts::<S>(origin), parts::<S>(direction));
+        if !sound(Scalar, scalars(o), scalars(d)).any() {
             return None;
         }
-        let inverse = reciprocal(token, axes(token, direction));
-        let slack = S::F32x4::splat(token, value(tree.slack(Scalar, distance(o))));
-        let (near, far) = offsets(axes(token, origin), inverse, slack);
+        let inverse = reciprocal(token, direction);
+        let slack = S::F32x4::splat(token, value(tree.slack(Scalar, distance(scalars(o)))));
+        let (near, far) = offsets(origin, inverse, slack);
         let (mut sheared, mut sphere) = (ShearedRay::default(), SphereRay::default());
         if primitives.triangle_count() > 0 {
-            sheared = sheared_ray(token, origin, direction);
+            sheared = sheared_ray(token, origin, direction, dominant_axis(d.into()));
         }
         if !primitives.spheres().is_empty() {
-            sphere = SphereRay::new(origin, direction);
+            sphere = SphereRay::new(o.into(), d.into());
         }
         Some(Self {
             slabs: SlabRay {
@@ -61,10 +62,8 @@ impl<S: Simd> OneRay<S> {
 
 /// The twin of [`ShearedRay::new`], without a branch.
 #[inline(always)]
-fn sheared_ray<S: Simd>(token: S, origin: Vec3f, direction: Vec3f) -> ShearedRay {
-    let axis = dominant_axis(direction);
-    let o = renamed(token, axis, axes(token, origin));
-    let d = renamed(token, axis, axes(token, direction));
+fn sheared_ray<S: Simd>(token: S, origin: S::F32x4, direction: S::F32x4, axis: usize) -> ShearedRay {
+    let (o, d) = (renamed(token, axis, origin), renamed(token, axis, direction));
     let [.., dz] = parts::<S>(d);
     let only_z = <S::F32x4 as F32Lanes>::Mask::from_bits(token, 1 << 2);
     let numerator = S::F32x4::select(only_z, S::F32x4::splat(token, 1.0), d);
@@ -97,8 +96,8 @@ fn parts<S: Simd>(v: S::F32x4) -> [f32; 3] {
 }
 
 #[inline(always)]
-fn scalars(v: Vec3f) -> Vec3<One> {
-    Vec3::new(One::splat(Scalar, v.x), One::splat(Scalar, v.y), One::splat(Scalar, v.z))
+fn scalars([x, y, z]: [f32; 3]) -> Vec3<One> {
+    Vec3::new(One::splat(Scalar, x), One::splat(Scalar, y), One::splat(Scalar, z))
 }
 
 #[inline(always)]
