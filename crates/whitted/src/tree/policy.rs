@@ -4,7 +4,7 @@
 //! | --- | --- | --- |
 //! | 64 with one origin and one main axis: of a camera, of a light | packet, bounded by a pyramid | decisions 2 and 4 |
 //! | others, many at a time | lists that go down the tree together, short ones in turns | `walk/stream.rs` |
-//! | one | by itself | |
+//! | one | by itself | decision 9 |
 //!
 //! What is not known before is found out by the walks: whether 64 neighbours make a packet, whether it stays together (it
 //! has a budget, and a packet that exceeds it goes on as a list), and which lists have become short.

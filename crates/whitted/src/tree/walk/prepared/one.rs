@@ -30,6 +30,8 @@ impl<S: Simd> OneRay<S> {
     /// Prepare a ray; none if it hits nothing.
     #[inline(always)]
     pub(in crate::tree::walk) fn new(token: S, tree: &Tree, primitives: &Primitives, ray: &Ray) -> Option<Self> {
+        // Lanes first, then scaled: scaled by number, the ray is read in pieces that reach from one of the caller's stores
+        // into the next, and have to wait for both (docs/decisions/0009).
         let scale = S::F32x4::splat(token, tree.scale());
         let (origin, direction) = (axes(token, ray.origin) * scale, axes(token, ray.direction) * scale);
         let (o, d) = (parts::<S>(origin), parts::<S>(direction));
