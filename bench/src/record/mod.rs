@@ -58,13 +58,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let name = format!("{date}-{}-{}", slug(&cpu), slug(&commit));
     let base = options.folder.join(&name);
     std::fs::create_dir_all(&options.folder)?;
+    // First, for they need other programs, which may not be there: an hour of measurements would be lost.
+    let pictures =
+        taken(options.take_pictures.as_deref(), || pictures::run(&pictures::Options::new(scenes.shared.clone())))?;
     let rays = taken(options.take_rays.as_deref(), || {
         rays::run(&rays::Options::new(embree, scenes, ours, *passes, *max_rays))
     })?;
     let curve = taken(options.take_curve.as_deref(), || curve::run(&curve::Options::new(embree, ours)))?;
     let build = taken(options.take_build.as_deref(), || builds::run(&builds::Options::new(embree, scenes, ours)))?;
-    let pictures =
-        taken(options.take_pictures.as_deref(), || pictures::run(&pictures::Options::new(scenes.shared.clone())))?;
     let level = ours.level().name();
     let record = json!({
         "date": date, "cpu": cpu, "commit": commit, "level": level, "passes": passes, "max_rays": max_rays,
