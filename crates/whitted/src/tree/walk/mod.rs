@@ -73,6 +73,12 @@ impl<G: Goal> Walk<'_, G> {
         walked
     }
 
+    /// Whether the first and the last ray start at one point; then so do most, likely.
+    fn has_one_origin(&self) -> bool {
+        let (first, last) = (self.batch.get(self.start), self.batch.get(self.start + self.rays.len() - 1));
+        first.origin == last.origin
+    }
+
     /// Make the records of all rays but those in the packets `walked`.
     #[inline(always)]
     fn record<S: Simd>(&mut self, token: S, walked: Packets) {
