@@ -274,7 +274,7 @@ impl Builder<'_> {
         split.overlap > (MIN_OVERLAP_OF_ROOT * self.root_area).max(MIN_OVERLAP_OF_NODE * cell.bounds.half_area())
     }
 
-    /// Whether a cell holds anything but spheres, whose parts have boxes that are hardly smaller than the whole (decision 8).
+    /// Whether a cell holds anything but spheres, whose parts have boxes that are hardly smaller than the whole (decision 3).
     fn gains_by_cuts(&self, cell: &Cell<'_>) -> bool {
         cell.used().iter().any(|reference| self.kind(reference) != LeafKind::Spheres)
     }
