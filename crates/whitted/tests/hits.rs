@@ -7,9 +7,12 @@ use whitted::math::SplitMix64;
 use whitted::ray::{HitBatch, RayBatch};
 use whitted::tree::{Occlusion, Query, Scratch, Tree, TreeKind, WalkKind};
 
-/// Ray walks in all, 36 for each ray: three trees, three walks, four instruction sets; `WHITTED_RAYS` asks for more.
+/// Walks of each ray: three trees, three walks of batches and each ray by itself, four instruction sets.
+const WALKS: u64 = 3 * 4 * 4;
+
+/// Ray walks in all; `WHITTED_RAYS` asks for more.
 fn rays_in_all() -> u64 {
-    std::env::var("WHITTED_RAYS").map_or(36_000_000, |n| n.parse().expect("WHITTED_RAYS is a whole number"))
+    std::env::var("WHITTED_RAYS").map_or(1_000_000 * WALKS, |n| n.parse().expect("WHITTED_RAYS is a whole number"))
 }
 
 fn bits(hits: &HitBatch) -> Vec<(u32, u32, u32, u32)> {
@@ -51,8 +54,24 @@ fn compare(primitives: &Primitives, rays: &RayBatch, seed: u64) -> usize {
                 assert_eq!(any, expected_any, "scene {seed}, {kind:?}, {walk:?}, {level:?}");
             }
         }
+        for level in simd::Level::available() {
+            let query = Query { tree: &tree, primitives, level, walk: WalkKind::Auto };
+            compare_one_by_one(&query, rays, &expected, &expected_any, seed);
+        }
     }
     (0..rays.len()).filter(|&i| expected.get(i).is_hit()).count()
+}
+
+/// A ray that comes alone has a kernel of its own.
+fn compare_one_by_one(query: &Query<'_>, rays: &RayBatch, expected: &HitBatch, expected_any: &[Occlusion], seed: u64) {
+    let (mut scratch, mut found, mut any) = (Scratch::default(), HitBatch::default(), Vec::new());
+    for (i, expected) in bits(expected).into_iter().enumerate() {
+        let (ray, place) = (rays.get(i), format_args!("scene {seed}, {:?}, {:?}", query.tree.kind(), query.level));
+        query.closest_hit(&ray, &mut found, &mut scratch);
+        assert_eq!(bits(&found), [expected], "{place}, ray {i} by itself: {ray:?}");
+        query.occluded(&ray, None, &mut any, &mut scratch);
+        assert_eq!(any, [expected_any[i]], "{place}, shadow ray {i} by itself: {ray:?}");
+    }
 }
 
 /// All hits of a ray in order, by asking for the next one again and again.
@@ -95,7 +114,7 @@ fn all_hits_come_once_and_in_order() {
 fn every_walk_finds_the_hits_of_brute_force() {
     let per_scene = 1000;
     let mut hits = 0;
-    let scenes = rays_in_all() / per_scene / 36 + 1;
+    let scenes = rays_in_all() / per_scene / WALKS + 1;
     for seed in 0..scenes {
         let mut rng = SplitMix64::new(seed);
         let count = 1 + rng.below(if seed % 4 == 0 { 256 } else { 40 });
@@ -108,6 +127,8 @@ fn every_walk_finds_the_hits_of_brute_force() {
         hits += compare(&primitives, &rays.iter().collect(), seed);
     }
     let rays = scenes * per_scene;
-    println!("{scenes} scenes, {rays} rays, {hits} hits, each by 3 trees, 3 walks, every instruction set");
+    println!(
+        "{scenes} scenes, {rays} rays, {hits} hits, each by 3 trees, 3 walks and by itself, every instruction set"
+    );
     assert!(hits as u64 > rays / 10, "the rays should hit something: {hits} of {rays}");
 }
