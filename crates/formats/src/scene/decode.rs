@@ -28,7 +28,7 @@ pub(super) struct At<T> {
 }
 
 /// The name by which [`At`] asks this deserialiser for the place of a value.
-const AT: &str = "$at";
+pub(super) const AT: &str = "$at";
 
 /// The key that chooses the variant of an enum whose variants are tables.
 const KIND: &str = "kind";
@@ -131,7 +131,7 @@ impl<'de> Deserializer<'de> for &'de Node<'_> {
         visitor: V,
     ) -> Result<V::Value, Fault> {
         match name {
-            AT => visitor.visit_seq(Placed { span: &self.span, value: Some(self), given: 0 }),
+            AT => visitor.visit_seq(Placed::new(&self.span, self)),
             _ => self.deserialize_any(visitor),
         }
     }
@@ -234,7 +234,7 @@ impl<'de> Deserializer<'de> for &'de Key<'_> {
         _: usize,
         visitor: V,
     ) -> Result<V::Value, Fault> {
-        visitor.visit_seq(Placed { span: &self.span, value: Some(self), given: 0 })
+        visitor.visit_seq(Placed::new(&self.span, self))
     }
 
     forward_to_deserialize_any! {
@@ -285,16 +285,22 @@ impl<'de> VariantAccess<'de> for Chosen<'de, '_> {
 }
 
 /// Start, end and value of what [`At`] asked for.
-struct Placed<'de, D> {
-    span: &'de Span,
+pub(super) struct Placed<'s, D> {
+    span: &'s Span,
     value: Option<D>,
     given: usize,
 }
 
-impl<'de, D: Deserializer<'de, Error = Fault>> SeqAccess<'de> for Placed<'de, D> {
-    type Error = Fault;
+impl<'s, D> Placed<'s, D> {
+    pub(super) fn new(span: &'s Span, value: D) -> Self {
+        Self { span, value: Some(value), given: 0 }
+    }
+}
 
-    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Fault> {
+impl<'de, D: Deserializer<'de>> SeqAccess<'de> for Placed<'_, D> {
+    type Error = D::Error;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, D::Error> {
         self.given += 1;
         match self.given {
             1 => seed.deserialize(self.span.start.into_deserializer()).map(Some),

@@ -19,7 +19,8 @@ pub(super) fn parse(text: &str) -> Result<Node<'_>, Fault> {
     convert(text, raw, 0)
 }
 
-fn convert<'t>(text: &'t str, raw: &'t RawValue, depth: usize) -> Result<Node<'t>, Fault> {
+/// The value `raw`, a part of `text`, which lies in `depth` others.
+pub(super) fn convert<'t>(text: &'t str, raw: &'t RawValue, depth: usize) -> Result<Node<'t>, Fault> {
     let raw = raw.get();
     let span = span_of(text, raw);
     if depth > DEEPEST {
@@ -41,19 +42,14 @@ fn convert<'t>(text: &'t str, raw: &'t RawValue, depth: usize) -> Result<Node<'t
             let Entries(entries) = serde_json::from_str(raw).map_err(fault)?;
             convert_entries(text, entries, depth)?
         }
-        _ => convert_number(raw, &span)?,
+        _ => number(raw).ok_or_else(|| Fault::new(span.clone(), "this is not a number"))?,
     };
     Ok(Node { span, value })
 }
 
-fn convert_number(raw: &str, span: &Span) -> Result<Value<'static>, Fault> {
-    if let Ok(integer) = raw.parse() {
-        return Ok(Value::Integer(integer));
-    }
-    match raw.parse() {
-        Ok(float) => Ok(Value::Float(float)),
-        Err(_) => Err(Fault::new(span.clone(), "this is not a number")),
-    }
+/// The value of a number.
+pub(super) fn number(raw: &str) -> Option<Value<'static>> {
+    raw.parse().map(Value::Integer).or_else(|_| raw.parse().map(Value::Float)).ok()
 }
 
 fn convert_entries<'t>(
@@ -76,7 +72,7 @@ fn convert_entries<'t>(
 }
 
 /// Where `part` lies in `text`, of which it must be a part.
-fn span_of(text: &str, part: &str) -> Span {
+pub(super) fn span_of(text: &str, part: &str) -> Span {
     let start = (part.as_ptr() as usize).saturating_sub(text.as_ptr() as usize);
     start..start + part.len()
 }

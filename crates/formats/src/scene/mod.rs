@@ -1,7 +1,7 @@
 //! The native scene format, version 1, as TOML and as JSON: `docs/scene-format.md`.
 //!
 //! A text becomes a [`document`] in which every value knows its place; the document becomes [`sections`] by serde, and
-//! the sections a scene. Each step tells its faults at their place. TOML without faults takes a [`quick`] way.
+//! the sections a scene. Each step tells its faults at their place. Texts without faults take a [`quick`] way.
 
 mod build;
 mod color;
@@ -32,28 +32,36 @@ use sections::SceneFile;
 
 /// Read a scene written in TOML.
 pub(crate) fn read_toml(source: Source<'_>, context: &mut Context<'_>) -> Result<Scene, Error> {
-    build::build(&decode_toml(&source)?, source, context)
+    build::build(&decode(&source, &TOML)?, source, context)
 }
 
 /// Read a scene written in JSON.
 pub(crate) fn read_json(source: Source<'_>, context: &mut Context<'_>) -> Result<Scene, Error> {
-    build::build(&decode(&source, json::parse)?, source, context)
+    build::build(&decode(&source, &JSON)?, source, context)
 }
 
 /// What a scene written in TOML says about cameras, lights, materials and the picture; nothing that it names is opened.
 fn look_of(source: Source<'_>) -> Result<Scene, Error> {
-    build::look(&decode_toml(&source)?, source)
+    build::look(&decode(&source, &TOML)?, source)
 }
 
-fn decode_toml(source: &Source<'_>) -> Result<SceneFile, Error> {
-    match quick::read(utf8(source)?) {
-        Some(file) => Ok(file),
-        None => decode(source, toml::parse),
+/// A language that scenes are written in.
+struct Language {
+    /// The quick way, which answers as the other one or not at all.
+    quick: fn(&str) -> Option<SceneFile>,
+    /// The way that knows all of the language and all that can be wrong.
+    parse: fn(&str) -> Result<Node<'_>, Fault>,
+}
+
+const TOML: Language = Language { quick: quick::toml::read, parse: toml::parse };
+const JSON: Language = Language { quick: quick::json::read, parse: json::parse };
+
+fn decode(source: &Source<'_>, language: &Language) -> Result<SceneFile, Error> {
+    let text = utf8(source)?;
+    if let Some(file) = (language.quick)(text) {
+        return Ok(file);
     }
-}
-
-fn decode(source: &Source<'_>, parse: fn(&str) -> Result<Node<'_>, Fault>) -> Result<SceneFile, Error> {
-    let document = parse(utf8(source)?).map_err(|fault| error(source, fault))?;
+    let document = (language.parse)(text).map_err(|fault| error(source, fault))?;
     if document.get("version").is_none() {
         return Err(source.error_whole("the key \"version\" is missing").hint("a scene begins with version = 1"));
     }

@@ -13,7 +13,7 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
-use super::decode::{At, decode};
+use super::decode::At;
 use super::document::{Key, Node, Value};
 use super::values::Count;
 
@@ -83,10 +83,15 @@ macro_rules! lists {
         }
 
         impl Lists {
+            /// Whether there is a list of the key `key`.
+            pub(super) fn has(key: &str) -> bool {
+                matches!(key, $($key)|*)
+            }
+
             /// Append an item to the list of the key `key`. None if the item is wrong, or there is no such list.
-            pub(super) fn push(&mut self, key: &str, item: &Node<'_>) -> Option<()> {
+            pub(super) fn push<'de>(&mut self, key: &str, item: impl Deserializer<'de>) -> Option<()> {
                 match key {
-                    $($key => self.$field.push(decode(item).ok()?),)*
+                    $($key => self.$field.push(<$section>::deserialize(item).ok()?),)*
                     _ => return None,
                 }
                 Some(())

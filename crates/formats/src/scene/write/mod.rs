@@ -41,7 +41,7 @@ fn camera_header(name: &str) -> String {
 pub fn write_back(file: &Path, text: &str, old: &Scene, new: &Scene) -> Result<String, Error> {
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let source = Source { file, bytes: body.as_bytes() };
-    let stated = super::decode_toml(&source)?;
+    let stated = super::decode(&source, &super::TOML)?;
     let before = build::look(&stated, source)?;
     let wanted = wanted(&before, &build::implied_materials(&stated), old, new)
         .map_err(|what| Error::new(ErrorKind::Unsupported, file, what))?;
