@@ -1,8 +1,8 @@
 //! One ray by itself: all that the walk needs of it stays in registers from the root to the last leaf.
 
 use super::prepared::OneRay;
-use super::single::Stack;
 use super::slabs::{SlabRay, Slabs};
+use super::turns::Stack;
 use super::{LeafQuery, LeafRay, Lists, intersect_leaf, planes_of_one};
 use crate::geometry::sphere::SphereRay;
 use crate::geometry::triangle::Refined;

@@ -6,9 +6,9 @@ mod abreast;
 mod alone;
 mod frustum;
 mod prepared;
-mod single;
 mod slabs;
 mod stream;
+mod turns;
 
 pub(super) use alone::{Alone, HitAlone, refined};
 pub(super) use frustum::PACKET;

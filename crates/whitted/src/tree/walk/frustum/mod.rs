@@ -14,7 +14,7 @@ mod packet;
 mod pyramid;
 
 use super::Walk;
-use super::single::Stack;
+use super::turns::Stack;
 use crate::tree::goal::Goal;
 use crate::tree::leaf::LeafKind;
 use crate::tree::node::{Child, ChildKind, WIDTH};
