@@ -10,7 +10,7 @@ use crate::math::Vec3f;
 /// A triangle with its plane solved for one axis and its edges in the other two.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Projected {
-    /// The axis along which the normal is longest; u and v follow it cyclically.
+    /// The axis along which the normal is longest; u and v are the others.
     axis: u32,
     /// The plane: `p[axis] + normal[0] · p[u] + normal[1] · p[v] = distance`.
     normal: [f32; 2],

@@ -196,14 +196,6 @@ impl Primitives {
         }
     }
 
-    /// Ask the memory for the corners of a triangle; nothing for any other number.
-    #[inline(always)]
-    pub(crate) fn prefetch_corners(&self, id: u32) {
-        for &vertex in self.triangles.get(id as usize).into_iter().flatten() {
-            simd::prefetch(&self.vertices, vertex as usize);
-        }
-    }
-
     /// The vertices of all meshes, one after the other.
     pub fn vertices(&self) -> &[[f32; 3]] {
         &self.vertices

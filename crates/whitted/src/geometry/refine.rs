@@ -1,9 +1,8 @@
 //! The final t and surface coordinates of hits, in double precision.
 //!
 //! The walks order hits by an `f32` t that is good to a few ulp of the distance in the *sheared* triangle; what is
-//! reported is the t of the triangle itself. Done once for each hit, eight at a time, and
-//! hits that are neighbours in the batch together, so that rays need not be gathered; [`Triangle::refine`] and
-//! [`Sphere::refine`] are the scalar twins.
+//! reported is the t of the triangle itself. Done once for each hit, eight at a time, and hits that are neighbours in the
+//! batch together, so that rays need not be gathered; [`Triangle::refine`] and [`Sphere::refine`] are the scalar twins.
 
 use super::surfaces::padded;
 use super::triangle::Refined;
@@ -38,19 +37,14 @@ pub(crate) fn refine_one_by_one(primitives: &Primitives, rays: Rays<'_>, hits: &
     }
 }
 
-/// With more primitives than this, the hits' corners are not in the nearer caches.
+/// With more primitives than this, those that were hit are not in the nearer caches.
 const MANY: usize = 1 << 17;
 
-/// Ask the memory for the primitives of hits that come soon, those of `found` being next.
+/// Ask the memory for the primitives of these hits.
 #[inline(always)]
 fn prefetch(primitives: &Primitives, found: &[u32]) {
-    // Far enough to hide a read from memory: corners are known only when the triangle is there.
-    const AHEAD: usize = 24;
-    for &id in found.get(2 * AHEAD..2 * AHEAD + STEP).unwrap_or_default() {
+    for &id in found {
         primitives.prefetch(id);
-    }
-    for &id in found.get(AHEAD..AHEAD + STEP).unwrap_or_default() {
-        primitives.prefetch_corners(id);
     }
 }
 
@@ -67,25 +61,132 @@ impl Kernel for Refine<'_, '_> {
     #[inline(always)]
     fn run<S: Simd>(self, token: S) {
         let Self { primitives, rays, hits, range } = self;
-        let triangles = ids::<S>(token, primitives.triangle_count());
-        let first_sphere = ids::<S>(token, primitives.first_sphere() as usize);
-        let spheres = ids::<S>(token, primitives.spheres().len());
+        let triangles = Kind::<S>::new(token, 0, primitives.triangle_count());
+        let spheres = Kind::<S>::new(token, primitives.first_sphere(), primitives.spheres().len());
         let are_many = primitives.len() > MANY;
-        for start in range.clone().step_by(STEP) {
+        let mut gathered = Gathered::new(token);
+        for start in range.clone().step_by(RUN) {
+            let run = start..range.end.min(start + RUN);
             if are_many {
-                prefetch(primitives, &hits.primitive[start..range.end]);
+                prefetch(primitives, &hits.primitive[run.end..range.end.min(run.end + RUN)]);
             }
-            let step = start..range.end.min(start + STEP);
-            let found = load_ids(token, &hits.primitive[step.clone()]);
-            let is_triangle = found.lt(triangles);
-            if is_triangle.any() {
-                refine_triangles(token, primitives, rays, hits, step.clone(), is_triangle);
+            if primitives.triangle_count() > 0 {
+                gathered.triangles(token, primitives, triangles, &hits.primitive[run.clone()]);
+                for number in 0..steps(&run) {
+                    let step = step(&run, number);
+                    let (_, mask) = triangles.among(load_ids(token, &hits.primitive[step.clone()]));
+                    if mask.any() {
+                        refine_triangles(token, &gathered.corners[number], rays, hits, step, mask);
+                    }
+                }
             }
-            // Wraps round for triangles, so that no other kind looks like a sphere.
-            let sphere = found - first_sphere;
-            let is_sphere = sphere.lt(spheres);
-            if is_sphere.any() {
-                refine_spheres(token, primitives.spheres(), rays, hits, step, is_sphere, sphere);
+            if !primitives.spheres().is_empty() {
+                gathered.spheres(token, primitives, spheres, &hits.primitive[run.clone()]);
+                for number in 0..steps(&run) {
+                    let step = step(&run, number);
+                    let (_, mask) = spheres.among(load_ids(token, &hits.primitive[step.clone()]));
+                    if mask.any() {
+                        refine_spheres(token, &gathered.spheres[number], rays, hits, step, mask);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Hits whose primitives are gathered before the first is refined: their reads wait together, and the arithmetic waits
+/// for none.
+const RUN: usize = 8 * STEP;
+
+/// Number of steps in a run.
+#[inline(always)]
+fn steps(run: &Range<usize>) -> usize {
+    run.len().div_ceil(STEP)
+}
+
+/// A step of a run.
+#[inline(always)]
+fn step(run: &Range<usize>, number: usize) -> Range<usize> {
+    let first = run.start + number * STEP;
+    first..run.end.min(first + STEP)
+}
+
+/// The primitives of a kind: `count` from `first` on.
+#[derive(Clone, Copy)]
+struct Kind<S: Simd> {
+    token: S,
+    first: Ids<S>,
+    count: Ids<S>,
+}
+
+impl<S: Simd> Kind<S> {
+    #[inline(always)]
+    fn new(token: S, first: u32, count: usize) -> Self {
+        Self { token, first: Ids::<S>::splat(token, first), count: Ids::<S>::splat(token, count as u32) }
+    }
+
+    /// The numbers among those of this kind, 0 for others, and which are of this kind.
+    #[inline(always)]
+    fn among(self, found: Ids<S>) -> (Ids<S>, Mask<S>) {
+        // Wraps round for those before the first, so that no other kind looks like this one.
+        let number = found - self.first;
+        let mask = number.lt(self.count);
+        (Ids::<S>::select(mask, number, Ids::<S>::splat(self.token, 0)), mask)
+    }
+}
+
+/// What the hits of a run lie on, step by step.
+struct Gathered<S: Simd> {
+    numbers: [[Ids<S>; 3]; RUN / STEP],
+    corners: [[[S::F32x8; 3]; 3]; RUN / STEP],
+    /// Centre and radius.
+    spheres: [[S::F32x8; 4]; RUN / STEP],
+}
+
+impl<S: Simd> Gathered<S> {
+    #[inline(always)]
+    fn new(token: S) -> Self {
+        let (none, zero) = (Ids::<S>::splat(token, 0), S::F32x8::splat(token, 0.0));
+        Self {
+            numbers: [[none; 3]; RUN / STEP],
+            corners: [[[zero; 3]; 3]; RUN / STEP],
+            spheres: [[zero; 4]; RUN / STEP],
+        }
+    }
+
+    /// Gather the corners of the triangles among `found`: first all their numbers, then all coordinates.
+    #[inline(always)]
+    fn triangles(&mut self, token: S, primitives: &Primitives, kind: Kind<S>, found: &[u32]) {
+        for (numbers, found) in self.numbers.iter_mut().zip(found.chunks(STEP)) {
+            let (triangle, mask) = kind.among(load_ids(token, found));
+            if mask.any() {
+                *numbers = Ids::<S>::gather_x3(primitives.corners(), triangle);
+            }
+        }
+        for (step, found) in found.chunks(STEP).enumerate() {
+            let (_, mask) = kind.among(load_ids(token, found));
+            if mask.any() {
+                let (vertices, [a, b, c]) = (primitives.vertices(), self.numbers[step]);
+                let [a, b] = [S::F32x8::gather_x3(vertices, a), S::F32x8::gather_x3(vertices, b)];
+                self.corners[step] = [a, b, S::F32x8::gather_x3(vertices, c)];
+            }
+        }
+    }
+
+    /// Gather the spheres among `found`.
+    #[inline(always)]
+    fn spheres(&mut self, token: S, primitives: &Primitives, kind: Kind<S>, found: &[u32]) {
+        for (rows, found) in self.spheres.iter_mut().zip(found.chunks(STEP)) {
+            let (sphere, mask) = kind.among(load_ids(token, found));
+            if mask.any() {
+                let mut numbers = [0; STEP];
+                sphere.store(&mut numbers);
+                let mut records = [S::F32x4::splat(token, 0.0); STEP];
+                for lane in 0..STEP {
+                    let sphere = &primitives.spheres()[numbers[lane] as usize];
+                    records[lane] = padded(token, sphere.center, sphere.radius);
+                }
+                *rows = token.columns_x8(records);
             }
         }
     }
@@ -93,11 +194,6 @@ impl Kernel for Refine<'_, '_> {
 
 type Ids<S> = <<S as Simd>::F32x8 as F32Lanes>::U32;
 type Mask<S> = <<S as Simd>::F32x8 as F32Lanes>::Mask;
-
-#[inline(always)]
-fn ids<S: Simd>(token: S, value: usize) -> Ids<S> {
-    Ids::<S>::splat(token, value as u32)
-}
 
 /// The primitives of a step; [`NONE`] beyond its end.
 #[inline(always)]
@@ -114,22 +210,22 @@ fn load_ids<S: Simd>(token: S, row: &[u32]) -> Ids<S> {
 #[inline(always)]
 fn refine_triangles<S: Simd>(
     token: S,
-    primitives: &Primitives,
+    corners: &[[S::F32x8; 3]; 3],
     rays: Rays<'_>,
     hits: &mut HitsMut<'_>,
     step: Range<usize>,
     mask: Mask<S>,
 ) {
-    let [a, b, c] = corners(token, primitives, load_ids(token, &hits.primitive[step.clone()]), mask);
+    let [a, b, c] = [widened::<S>(corners[0]), widened::<S>(corners[1]), widened::<S>(corners[2])];
     let (o, d) = (vector(token, rays.origin, &step), vector(token, rays.direction, &step));
     let (zero, one) = (S::F64x8::splat(token, 0.0), S::F64x8::splat(token, 1.0));
     let (ab, ac, from_a) = (b - a, c - a, o - a);
     let p = d.cross(ac);
     let area = ab.dot(p);
-    let per_area = one / area;
+    let (per_area, inverse) = (one / area, one / d.length_squared());
     let u = (from_a.dot(p) * per_area).max(zero).min(one);
     let v = (d.dot(from_a.cross(ab)) * per_area).max(zero).min(one - u);
-    let along = (ab * u + ac * v - from_a).dot(d) / d.length_squared();
+    let along = (ab * u + ac * v - from_a).dot(d) * inverse;
     let t = in_range(token, along.narrow(), rays, &step);
     let sound = mask & (area.lt(zero) | zero.lt(area));
     blend(token, &mut hits.t[step.clone()], sound, t);
@@ -137,40 +233,17 @@ fn refine_triangles<S: Simd>(
     blend(token, &mut hits.v[step], sound, v.narrow());
 }
 
-/// The three corners of the triangle in each lane of `mask`; of triangle 0 in others.
-#[inline(always)]
-fn corners<S: Simd>(token: S, primitives: &Primitives, found: Ids<S>, mask: Mask<S>) -> [Vec3<S::F64x8>; 3] {
-    let [a, b, c] = Ids::<S>::gather_x3(primitives.corners(), Ids::<S>::select(mask, found, ids::<S>(token, 0)));
-    let vertices = primitives.vertices();
-    [corner::<S>(vertices, a), corner::<S>(vertices, b), corner::<S>(vertices, c)]
-}
-
-/// The vertices with these numbers.
-#[inline(always)]
-fn corner<S: Simd>(vertices: &[[f32; 3]], numbers: Ids<S>) -> Vec3<S::F64x8> {
-    let [x, y, z] = S::F32x8::gather_x3(vertices, numbers);
-    Vec3::new(S::F64x8::widen(x), S::F64x8::widen(y), S::F64x8::widen(z))
-}
-
 /// The vector twin of [`Sphere::refine`], for the lanes of `mask`.
 #[inline(always)]
 fn refine_spheres<S: Simd>(
     token: S,
-    spheres: &[Sphere],
+    &[x, y, z, radius]: &[S::F32x8; 4],
     rays: Rays<'_>,
     hits: &mut HitsMut<'_>,
     step: Range<usize>,
     mask: Mask<S>,
-    sphere: Ids<S>,
 ) {
-    let mut index = [0; STEP];
-    Ids::<S>::select(mask, sphere, ids::<S>(token, 0)).store(&mut index);
-    let mut records = [S::F32x4::splat(token, 0.0); STEP];
-    for lane in 0..STEP {
-        let sphere = &spheres[index[lane] as usize];
-        records[lane] = padded(token, sphere.center, sphere.radius);
-    }
-    let (center, radius) = widened(token, records);
+    let (center, radius) = (widened::<S>([x, y, z]), S::F64x8::widen(radius));
     let (origin, d) = (vector(token, rays.origin, &step), vector(token, rays.direction, &step));
     let o = origin - center;
     let zero = S::F64x8::splat(token, 0.0);
@@ -184,11 +257,10 @@ fn refine_spheres<S: Simd>(
     blend(token, &mut hits.t[step], mask, t);
 }
 
-/// Eight records of four as a vector and the rest.
+/// Rows of a vector, in double precision.
 #[inline(always)]
-fn widened<S: Simd>(token: S, records: [S::F32x4; STEP]) -> (Vec3<S::F64x8>, S::F64x8) {
-    let [x, y, z, last] = token.columns_x8(records);
-    (Vec3::new(S::F64x8::widen(x), S::F64x8::widen(y), S::F64x8::widen(z)), S::F64x8::widen(last))
+fn widened<S: Simd>([x, y, z]: [S::F32x8; 3]) -> Vec3<S::F64x8> {
+    Vec3::new(S::F64x8::widen(x), S::F64x8::widen(y), S::F64x8::widen(z))
 }
 
 /// A step of three rows, in double precision.
@@ -251,10 +323,10 @@ impl Triangle {
         if is_flat(area) {
             return Refined { t, u: 0.0, v: 0.0 };
         }
-        let per_area = 1.0 / area;
+        let (per_area, inverse) = (1.0 / area, 1.0 / d.length_squared());
         let u = min(max(from_a.dot(p) * per_area, 0.0), 1.0);
         let v = min(max(d.dot(from_a.cross(ab)) * per_area, 0.0), 1.0 - u);
-        let along = (ab * u + ac * v - from_a).dot(d) / d.length_squared();
+        let along = (ab * u + ac * v - from_a).dot(d) * inverse;
         Refined { t: min(max(along as f32, ray.t_min), ray.t_max), u: u as f32, v: v as f32 }
     }
 }

@@ -5,7 +5,8 @@
 //! lanes also do twice the work of a block's eight.
 
 use super::Walk;
-use crate::geometry::{sphere, splat, triangle};
+use crate::geometry::triangle::{self, ShearedRays};
+use crate::geometry::{sphere, splat};
 use crate::ray::NONE;
 use crate::tree::goal::Goal;
 use crate::tree::leaf::{BLOCK, SphereBlock, TriangleBlock};
@@ -57,40 +58,54 @@ pub(super) fn spheres<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, ids: &
 }
 
 /// Test up to sixteen rays, given by their numbers, against blocks of triangles.
-///
-/// Each ray has its own renaming of axes, so each lane chooses among the coordinates of a vertex.
 #[inline(always)]
 pub(super) fn triangles<S: Simd, G: Goal>(token: S, walk: &mut Walk<'_, G>, ids: &[u16], blocks: &[TriangleBlock]) {
     let padded = padded(ids);
     let (rays, axis, [t_min, limit]) = walk.rays.sheared_x16(token, &padded);
-    let along = [axis.eq(U32::<S>::splat(token, 0)), axis.eq(U32::<S>::splat(token, 1))];
     let mut abreast = Abreast::<S>::new(token, padded, ids.len(), limit);
-    for block in blocks {
-        for lane in 0..BLOCK {
-            let primitive = block.primitive(lane);
-            if primitive == NONE {
-                break;
-            }
-            let vertices = [
-                renamed(along, splat(token, block.corner(0, lane, [0, 1, 2]))),
-                renamed(along, splat(token, block.corner(1, lane, [0, 1, 2]))),
-                renamed(along, splat(token, block.corner(2, lane, [0, 1, 2]))),
-            ];
-            let found = triangle::intersect(token, &rays, vertices, t_min, abreast.limit);
-            abreast.offer(token, walk.goal, found, primitive);
-        }
+    let first = walk.rays.sheared(usize::from(ids[0])).axis;
+    if axis.eq(U32::<S>::splat(token, first)).all() {
+        let axes = OneAxis(triangle::renamed((first % 3) as usize));
+        abreast.against(token, walk.goal, (&rays, t_min), blocks, axes);
+    } else {
+        let axes = OwnAxes { is_x: axis.eq(U32::<S>::splat(token, 0)), is_y: axis.eq(U32::<S>::splat(token, 1)) };
+        abreast.against(token, walk.goal, (&rays, t_min), blocks, axes);
     }
     abreast.finish(token, walk);
 }
 
-/// A point with its axes renamed as [`triangle::renamed`] does, for each lane, whose ray runs mostly along x, y or else z.
-#[inline(always)]
-fn renamed<F: F32Lanes>([along_x, along_y]: [F::Mask; 2], [x, y, z]: [F; 3]) -> [F; 3] {
-    [
-        F::select(along_x, y, F::select(along_y, z, x)),
-        F::select(along_x, z, F::select(along_y, x, y)),
-        F::select(along_x, x, F::select(along_y, y, z)),
-    ]
+/// How the rays rename the axes, see [`triangle::renamed`].
+trait Axes<S: Simd>: Copy {
+    /// The renamed coordinates of a vertex of one triangle, for each ray.
+    fn corner(self, token: S, block: &TriangleBlock, vertex: usize, lane: usize) -> [S::F32x16; 3];
+}
+
+/// All alike, as often after a flat mirror: nothing is chosen.
+#[derive(Clone, Copy)]
+struct OneAxis([usize; 3]);
+
+impl<S: Simd> Axes<S> for OneAxis {
+    #[inline(always)]
+    fn corner(self, token: S, block: &TriangleBlock, vertex: usize, lane: usize) -> [S::F32x16; 3] {
+        splat(token, block.corner(vertex, lane, self.0))
+    }
+}
+
+/// Each its own way, so that each lane chooses among the coordinates: the rays that run mostly along x, along y, the rest.
+#[derive(Clone, Copy)]
+struct OwnAxes<M> {
+    is_x: M,
+    is_y: M,
+}
+
+impl<S: Simd> Axes<S> for OwnAxes<<S::F32x16 as F32Lanes>::Mask> {
+    #[inline(always)]
+    fn corner(self, token: S, block: &TriangleBlock, vertex: usize, lane: usize) -> [S::F32x16; 3] {
+        let Self { is_x, is_y } = self;
+        let [x, y, z]: [S::F32x16; 3] = splat(token, block.corner(vertex, lane, [0, 1, 2]));
+        let select = S::F32x16::select;
+        [select(is_x, z, x), select(is_y, z, y), select(is_x, x, select(is_y, y, z))]
+    }
 }
 
 /// The first id for lanes without one.
@@ -107,6 +122,33 @@ impl<S: Simd> Abreast<S> {
         let used = <S::F32x16 as F32Lanes>::Mask::from_bits(token, (1 << count) - 1);
         let limit = S::F32x16::select(used, limit, S::F32x16::splat(token, f32::NEG_INFINITY));
         Self { ids, before: limit, limit, found: U32::<S>::splat(token, NONE) }
+    }
+
+    /// Test the rays against blocks of triangles, one after the other.
+    #[inline(always)]
+    fn against<G: Goal>(
+        &mut self,
+        token: S,
+        goal: &mut G,
+        (rays, t_min): (&ShearedRays<S::F32x16>, S::F32x16),
+        blocks: &[TriangleBlock],
+        axes: impl Axes<S>,
+    ) {
+        for block in blocks {
+            for lane in 0..BLOCK {
+                let primitive = block.primitive(lane);
+                if primitive == NONE {
+                    break;
+                }
+                let vertices = [
+                    axes.corner(token, block, 0, lane),
+                    axes.corner(token, block, 1, lane),
+                    axes.corner(token, block, 2, lane),
+                ];
+                let found = triangle::intersect(token, rays, vertices, t_min, self.limit);
+                self.offer(token, goal, found, primitive);
+            }
+        }
     }
 
     /// Offer what the rays hit at `t`.

@@ -72,17 +72,15 @@ fn sheared_ray<S: Simd>(token: S, origin: S::F32x4, direction: S::F32x4, axis: u
     ShearedRay::from_parts(parts::<S>(o), parts::<S>(numerator / S::F32x4::splat(token, dz)), axis as u32)
 }
 
-/// The components in the order in which they follow each other after `axis`, as [`renamed`](crate::geometry::triangle::renamed).
+/// The components with that of `axis` and the last in each other's place, as [`renamed`](crate::geometry::triangle::renamed).
 #[inline(always)]
 fn renamed<S: Simd>(token: S, axis: usize, v: S::F32x4) -> S::F32x4 {
+    // The lanes that take their component from yzx, and from zxy.
+    const ONCE: [u32; 3] = [0b100, 0b010, 0];
+    const TWICE: [u32; 3] = [0b001, 0b100, 0];
     let turned = token.yzx(v);
-    let (is_x, is_z) = (all_if(token, axis == 0), all_if(token, axis == 2));
-    S::F32x4::select(is_z, v, S::F32x4::select(is_x, turned, token.yzx(turned)))
-}
-
-#[inline(always)]
-fn all_if<S: Simd>(token: S, set: bool) -> <S::F32x4 as F32Lanes>::Mask {
-    <S::F32x4 as F32Lanes>::Mask::from_bits(token, 0u32.wrapping_sub(u32::from(set)))
+    let [once, twice] = [ONCE, TWICE].map(|lanes| <S::F32x4 as F32Lanes>::Mask::from_bits(token, lanes[axis % 3]));
+    S::F32x4::select(once, turned, S::F32x4::select(twice, token.yzx(turned), v))
 }
 
 #[inline(always)]

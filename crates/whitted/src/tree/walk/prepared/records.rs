@@ -166,12 +166,12 @@ fn sign<F: F32Lanes>(component: F) -> F::U32 {
     component.to_bits().shr::<31>()
 }
 
-/// The components in the order y z x where x dominates, z x y where y does, x y z where z does.
+/// The components as [`renamed`](crate::geometry::triangle::renamed) has them: z y x where x dominates, x z y where y does.
 #[inline(always)]
 fn renamed_lanes<F: F32Lanes>(is_y: F::Mask, is_z: F::Mask, v: Vec3<F>) -> [F; 3] {
     [
-        F::select(is_z, v.x, F::select(is_y, v.z, v.y)),
-        F::select(is_z, v.y, F::select(is_y, v.x, v.z)),
+        F::select(is_y | is_z, v.x, v.z),
+        F::select(is_y & !is_z, v.z, v.y),
         F::select(is_z, v.z, F::select(is_y, v.y, v.x)),
     ]
 }
