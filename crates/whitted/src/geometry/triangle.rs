@@ -44,7 +44,7 @@ pub struct ShearedRay {
     pub origin: [f32; 3],
     /// `d.x / d.z`, `d.y / d.z` and `1 / d.z` in renamed axes.
     pub shear: [f32; 3],
-    /// The axis that became z: 0, 1 or 2, see [`renamed`].
+    /// The axis that became z: 0, 1 or 2; z took its place.
     pub axis: u32,
     padding: u32,
 }

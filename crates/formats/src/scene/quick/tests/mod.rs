@@ -53,6 +53,22 @@ fn check_changes(language: &Language, sample: &str, pieces: &[&str], fits: impl 
     assert!(right > RUNS / 20 && understood > right * 4 / 5);
 }
 
+/// Compares texts of pieces in any order, some of them more than once: fewer than `most` in a text.
+#[track_caller]
+fn check_orders(language: &Language, pieces: &[&str], [before, after]: [&str; 2], most: u32) {
+    const RUNS: usize = 20_000;
+    let mut random = SplitMix64::new(8);
+    let mut right = 0;
+    for _ in 0..RUNS {
+        let mut text = before.to_owned();
+        (0..random.below(most)).for_each(|_| text.push_str(pieces[random.below(pieces.len() as u32) as usize]));
+        text.push_str(after);
+        right += usize::from(compare(language, &text).1);
+    }
+    println!("{right} right ones of {RUNS}");
+    assert!(right > RUNS / 20);
+}
+
 fn at_any_character(text: &str, random: &mut SplitMix64) -> usize {
     let at = random.below(text.len() as u32 + 1) as usize;
     (0..=at).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
