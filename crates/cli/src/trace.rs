@@ -20,8 +20,9 @@ use whitted::scene::Space;
 use whitted::tree::BuildOptions;
 use whitted::tree::policy::{Origins, RaySort};
 
-/// Rays that are read, traced and written at a time: enough for all threads, few enough for their caches.
-const PIECE: usize = 1 << 16;
+/// Rays that are read, traced and written at a time: the more there are, the more neighbours has each that is put in order,
+/// and the longer does a pipe wait for its first hits.
+const PIECE: usize = 1 << 18;
 
 pub(crate) fn run(arguments: &TraceArguments) -> Result<(), Failure> {
     let start = Instant::now();

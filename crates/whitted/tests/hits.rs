@@ -2,9 +2,9 @@
 
 mod common;
 
-use whitted::geometry::Primitives;
-use whitted::math::SplitMix64;
-use whitted::ray::{HitBatch, RayBatch};
+use whitted::geometry::{Primitives, Sphere};
+use whitted::math::{SplitMix64, Vec3f};
+use whitted::ray::{HitBatch, NONE, Ray, RayBatch};
 use whitted::tree::{Occlusion, Query, Scratch, Tree, TreeKind, WalkKind};
 
 /// Walks of each ray: three trees, three walks of batches and each ray by itself, four instruction sets.
@@ -108,6 +108,63 @@ fn all_hits_come_once_and_in_order() {
             assert_eq!(all_hits(&query(tree, walk), &rays), expected, "scene {seed}, {:?}, {walk:?}", tree.kind());
         }
     }
+}
+
+/// Small triangles and spheres all over a cube, so that lists of rays soon become short.
+fn strewn(rng: &mut SplitMix64) -> Primitives {
+    let mut primitives = Primitives::new();
+    let mut point = |size: f64| Vec3f::from([(); 3].map(|()| rng.uniform(-size, size) as f32));
+    let corners = |at: Vec3f, b: Vec3f, c: Vec3f| [at, at + b, at + c];
+    let vertices: Vec<_> = (0..6000).flat_map(|_| corners(point(1.0), point(0.05), point(0.05))).collect();
+    let triangles: Vec<_> = (0..6000).map(|number| [3 * number, 3 * number + 1, 3 * number + 2]).collect();
+    primitives.push_mesh(&vertices, &triangles, &[], &[]).expect("a sound mesh");
+    for _ in 0..6000 {
+        primitives.push_sphere(Sphere { center: point(1.0), radius: point(0.02).x.abs() });
+    }
+    primitives
+}
+
+/// A batch so large that the rest of it is put in order when its first chunk had much to do.
+#[test]
+fn rays_that_were_put_in_order_find_what_they_find_in_theirs() {
+    let mut rng = SplitMix64::new(3);
+    let primitives = strewn(&mut rng);
+    let mut component = |size: f64| rng.uniform(-size, size) as f32;
+    let rays: RayBatch = (0..100_003)
+        .map(|_| {
+            let mut ray = Ray::new([(); 3].map(|()| component(1.2)), [(); 3].map(|()| component(1.0)));
+            (ray.t_min, ray.t_max) = (component(0.1), 1.0 + component(1.0));
+            ray
+        })
+        .collect::<Vec<_>>()
+        .iter()
+        .collect();
+    let none = Tree::build(&primitives, &TreeKind::None.into());
+    let tree = Tree::build(&primitives, &TreeKind::Best.into());
+    let mut scratch = Scratch::default();
+    let (mut expected, mut expected_any) = (HitBatch::default(), Vec::new());
+    let query = |tree, level, walk| Query { tree, primitives: &primitives, level, walk };
+    let best = simd::Level::best();
+    let stream = query(&tree, best, WalkKind::Stream);
+    let in_turn = stream.closest_hit(&rays, &mut expected, &mut scratch);
+    let in_turn_any = stream.occluded(&rays, None, &mut expected_any, &mut scratch);
+    for level in simd::Level::available() {
+        let (mut found, mut any) = (HitBatch::default(), Vec::new());
+        let auto = query(&tree, level, WalkKind::Auto);
+        let counts = auto.closest_hit(&rays, &mut found, &mut scratch);
+        assert_eq!(bits(&found), bits(&expected), "{level:?}");
+        assert!(10 * counts.lists < 9 * in_turn.lists, "rays are put in order: {counts:?}, else {in_turn:?}");
+        let counts = auto.occluded(&rays, None, &mut any, &mut scratch);
+        assert_eq!(any, expected_any, "{level:?}");
+        assert!(10 * counts.lists < 9 * in_turn_any.lists, "rays are put in order: {counts:?}, else {in_turn_any:?}");
+    }
+    let some: RayBatch = (0..rays.len()).step_by(101).map(|i| rays.get(i)).collect::<Vec<_>>().iter().collect();
+    let mut brute = HitBatch::default();
+    query(&none, best, WalkKind::Auto).closest_hit(&some, &mut brute, &mut scratch);
+    let expected: Vec<_> = bits(&expected).into_iter().step_by(101).collect();
+    assert_eq!(expected, bits(&brute));
+    let hits = brute.primitive.iter().filter(|&&id| id != NONE).count();
+    assert!((brute.len() / 6..brute.len()).contains(&hits), "some rays hit: {hits} of {}", brute.len());
 }
 
 #[test]

@@ -6,9 +6,12 @@ use crate::ray::{HitBatch, HitLists, HitsMut, Rays};
 use crate::tree::{Filter, Occlusion, WalkKind};
 use rayon::prelude::*;
 
-/// Rays that one thread takes at a time: a multiple of the chunk of the walks, so that each is walked as it would be
-/// alone.
+/// Rays are divided among threads after multiples of this, the chunk of the walks.
 const GRAIN: usize = 4 * 4096;
+
+/// Parts for each thread: the more there are, the shorter do threads wait for the last one, and the fewer neighbours do
+/// rays have that are put in order.
+const PARTS: usize = 2;
 
 impl RayScene {
     /// The first hit of each ray, by all threads of the current rayon pool; as [`closest_hit`](Self::closest_hit).
@@ -28,7 +31,7 @@ impl RayScene {
         let rays = rays.into();
         let mut hits = HitBatch::default();
         hits.resize(rays.len());
-        self.closest_hit_divided(rays, (&mut hits).into());
+        self.closest_hit_divided(rays, (&mut hits).into(), part(rays.len()));
         hits
     }
 
@@ -45,13 +48,16 @@ impl RayScene {
         });
     }
 
-    fn closest_hit_divided(&self, rays: Rays<'_>, hits: HitsMut<'_>) {
-        if rays.len() <= GRAIN {
+    fn closest_hit_divided(&self, rays: Rays<'_>, hits: HitsMut<'_>, part: usize) {
+        if rays.len() <= part {
             return self.closest_hit_into(rays, hits);
         }
-        let middle = middle(rays.len());
+        let middle = middle(rays.len(), part);
         let ((left, right), (left_hits, right_hits)) = (rays.split_at(middle), hits.split_at(middle));
-        rayon::join(|| self.closest_hit_divided(left, left_hits), || self.closest_hit_divided(right, right_hits));
+        rayon::join(
+            || self.closest_hit_divided(left, left_hits, part),
+            || self.closest_hit_divided(right, right_hits, part),
+        );
     }
 
     /// Whether anything lies within the range of each ray, by all threads of the current rayon pool; as
@@ -59,7 +65,7 @@ impl RayScene {
     pub fn occluded_batch<'r>(&self, rays: impl Into<Rays<'r>>) -> Vec<bool> {
         let rays = rays.into();
         let mut occluded = vec![false; rays.len()];
-        self.occluded_divided(rays, &mut occluded);
+        self.occluded_divided(rays, &mut occluded, part(rays.len()));
         occluded
     }
 
@@ -71,26 +77,23 @@ impl RayScene {
         let rays = rays.into();
         assert_eq!(occluded.len(), rays.len(), "room for one answer to each ray");
         memory::with(|Memory { scratch, occlusion, .. }| {
-            for (part, occluded) in occluded.chunks_mut(GRAIN).enumerate() {
-                let rays = rays.slice(part * GRAIN..part * GRAIN + occluded.len());
-                let sees = |index: usize, primitive: u32| self.sees(rays.mask(index), primitive);
-                let filter = self.batch_filter(&rays, &sees);
-                occlusion.resize(rays.len(), Occlusion::Clear);
-                self.query(WalkKind::Auto).occluded_into(rays, None, filter, occlusion, scratch);
-                for (occluded, occlusion) in occluded.iter_mut().zip(occlusion.iter()) {
-                    *occluded = *occlusion == Occlusion::Blocked;
-                }
+            let sees = |index: usize, primitive: u32| self.sees(rays.mask(index), primitive);
+            let filter = self.batch_filter(&rays, &sees);
+            occlusion.resize(rays.len(), Occlusion::Clear);
+            self.query(WalkKind::Auto).occluded_into(rays, None, filter, occlusion, scratch);
+            for (occluded, occlusion) in occluded.iter_mut().zip(occlusion.iter()) {
+                *occluded = *occlusion == Occlusion::Blocked;
             }
         });
     }
 
-    fn occluded_divided(&self, rays: Rays<'_>, occluded: &mut [bool]) {
-        if rays.len() <= GRAIN {
+    fn occluded_divided(&self, rays: Rays<'_>, occluded: &mut [bool], part: usize) {
+        if rays.len() <= part {
             return self.occluded_into(rays, occluded);
         }
-        let middle = middle(rays.len());
+        let middle = middle(rays.len(), part);
         let ((left, right), (left_out, right_out)) = (rays.split_at(middle), occluded.split_at_mut(middle));
-        rayon::join(|| self.occluded_divided(left, left_out), || self.occluded_divided(right, right_out));
+        rayon::join(|| self.occluded_divided(left, left_out, part), || self.occluded_divided(right, right_out, part));
     }
 
     /// Every hit of each ray, by all threads of the current rayon pool; as [`all_hits`](Self::all_hits).
@@ -149,7 +152,12 @@ impl RayScene {
     }
 }
 
-/// Where to divide `len` rays: after whole grains, about half.
-fn middle(len: usize) -> usize {
-    len.div_ceil(GRAIN) / 2 * GRAIN
+/// How many of `len` rays a thread of the current pool takes at a time, at most.
+fn part(len: usize) -> usize {
+    len.div_ceil(PARTS * rayon::current_num_threads()).next_multiple_of(GRAIN)
+}
+
+/// Where to divide `len` rays: after whole parts, about half.
+fn middle(len: usize, part: usize) -> usize {
+    len.div_ceil(part) / 2 * part
 }

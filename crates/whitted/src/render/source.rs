@@ -66,6 +66,6 @@ impl Source for Caster<'_> {
 fn counted<R>(statistics: &mut Statistics, cast: impl FnOnce(&mut Steps) -> R) -> R {
     let mut steps = Steps::default();
     let result = cast(&mut steps);
-    *statistics += Counts { primitive_tests: steps.tests, node_steps: steps.steps };
+    *statistics += Counts { primitive_tests: steps.tests, node_steps: steps.steps, ..Counts::default() };
     result
 }

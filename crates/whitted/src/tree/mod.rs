@@ -22,6 +22,7 @@ mod node;
 pub mod policy;
 mod query;
 mod refit;
+mod reorder;
 mod validate;
 mod walk;
 mod wide;
@@ -62,7 +63,8 @@ pub enum TreeKind {
 /// How rays are walked through the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum WalkKind {
-    /// The walk that suits the rays, as [`policy::choose`] says.
+    /// The walk that suits the rays, as [`policy::choose`] says; the rays of a large batch are put in order before where
+    /// that pays.
     #[default]
     Auto,
     /// Lists of up to 16 384 rays pushed through the tree together.

@@ -3,15 +3,19 @@
 //! | rays | walk | measured |
 //! | --- | --- | --- |
 //! | 64 with one origin and one main axis: of a camera, of a light | packet, bounded by a pyramid | decisions 2 and 4 |
-//! | others, many at a time | lists that go down the tree together, short ones in turns | `walk/stream.rs` |
+//! | others, many at a time | lists that go down the tree together, short ones in turns | decisions 6 and 10 |
+//! | very many of them, whose lists soon become short | the same, put in order before | decision 11 |
 //! | one | by itself | decision 9 |
 //!
 //! What is not known before is found out by the walks: whether 64 neighbours make a packet, whether it stays together (it
-//! has a budget, and a packet that exceeds it goes on as a list), and which lists have become short.
+//! has a budget, and a packet that exceeds it goes on as a list), and which lists have become short. Where too many have,
+//! the rest of a large batch is put in order before it is walked (decision 11).
 
+use super::query::{CHUNK, Counts};
 use super::walk::PACKET;
-use super::{Tree, TreeKind, WalkKind};
+use super::{Tree, TreeKind, WalkKind, reorder};
 use crate::geometry::Primitives;
+use crate::ray::Rays;
 use std::fmt;
 
 /// What is known about rays before they are walked.
@@ -98,6 +102,32 @@ pub fn choose(asked: WalkKind, tree: &Tree, primitives: &Primitives, rays: &RayS
     }
 }
 
+/// What a list costs beside what its rays cost, in steps of a ray by itself.
+const STEPS_OF_A_LIST: u64 = 13;
+
+/// Chunks of rays that have to be put in order together for the half of what can be saved.
+const HALF: usize = 8;
+
+/// Whether it pays to put the next rays in order before they are walked, when the first `done` of them took `counts` as they
+/// came.
+///
+/// To move a ray and its answer takes as long as three quarters of a step that a ray makes by itself. Such steps and lists
+/// become fewer, the more rays there are to choose neighbours from: measured for eight kinds of scenes, it pays from one
+/// step a ray on where there are very many (docs/decisions/0011). Rays with one origin are left alone, for they make packets.
+pub(super) fn pays_to_reorder(counts: &Counts, done: usize, left: Rays<'_>) -> bool {
+    let chunks = left.len().min(reorder::MOST) / CHUNK;
+    let steps = counts.single_steps + STEPS_OF_A_LIST * counts.lists;
+    chunks >= 2 && steps * chunks as u64 > (done * (chunks + HALF)) as u64 && !share_origins(left)
+}
+
+/// True if most of some rays, evenly spread, start where the next one starts.
+fn share_origins(rays: Rays<'_>) -> bool {
+    const SOME: usize = 64;
+    let starts_with_next = |&index: &usize| rays.get(index).origin == rays.get(index + 1).origin;
+    let shared = (0..rays.len() - 1).step_by(rays.len().div_ceil(SOME)).filter(starts_with_next).count();
+    2 * shared > SOME
+}
+
 impl fmt::Display for Way {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -159,6 +189,27 @@ mod tests {
         assert_eq!(auto(RaySort { origins: Origins::Own, ..MANY }), (Way::Lists, Reason::OwnOrigins));
         assert_eq!(auto(RaySort { count: PACKET - 1, ..MANY }), (Way::Lists, Reason::TooFew));
         assert_eq!(auto(RaySort { count: 1, ..MANY }), (Way::OneByOne, Reason::OneRay));
+    }
+
+    /// Whether it pays to reorder so many chunks of rays when a ray of the first chunk took `steps` by itself.
+    fn pays(steps: f64, chunks: usize, origins: &[f32]) -> bool {
+        let row: Vec<f32> = origins.iter().copied().cycle().take(chunks * CHUNK).collect();
+        let counts = Counts { single_steps: (steps * CHUNK as f64) as u64, ..Counts::default() };
+        pays_to_reorder(&counts, CHUNK, Rays::new([&row, &row, &row], [&row, &row, &row]))
+    }
+
+    #[test]
+    fn rays_are_reordered_where_lists_are_short() {
+        let apart: Vec<f32> = (0..1000).map(|i| i as f32).collect();
+        assert!(pays(1.2, 64, &apart) && !pays(1.0, 64, &apart));
+        assert!(pays(2.1, 8, &apart) && !pays(1.9, 8, &apart));
+        assert!(pays(6.0, 2, &apart) && !pays(100.0, 1, &apart), "a chunk is walked together anyway");
+        assert!(!pays(100.0, 64, &[1.0]), "they make packets");
+        let lists = Counts { lists: CHUNK as u64 / 10, ..Counts::default() };
+        let row: Vec<f32> = (0..64 * CHUNK).map(|i| i as f32).collect();
+        let rays = Rays::new([&row, &row, &row], [&row, &row, &row]);
+        assert!(pays_to_reorder(&lists, CHUNK, rays) && !pays_to_reorder(&lists, 2 * CHUNK, rays));
+        assert!(!pays_to_reorder(&Counts::default(), 0, rays), "nothing is known before the first chunk");
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::crossings::CrossingLists;
 use super::filter::Filtered;
 use super::goal::{Any, Closest, Goal, Next};
 use super::policy::{self, Origins, RaySort, Way};
+use super::reorder::{self, Reorder};
 use super::walk::{self, Lists, PreparedRays};
 use super::{BitSet, Filter, Occlusion, Tree, TreeKind, WalkKind, brute_force};
 use crate::geometry::{self, Primitives};
@@ -32,12 +33,18 @@ pub struct Counts {
     pub primitive_tests: u64,
     /// Nodes visited by a ray.
     pub node_steps: u64,
+    /// Lists of rays that visited a node together.
+    pub lists: u64,
+    /// Nodes and leaves that a ray visited by itself, since the list that it was in had become short.
+    pub single_steps: u64,
 }
 
 impl AddAssign for Counts {
     fn add_assign(&mut self, other: Self) {
         self.primitive_tests += other.primitive_tests;
         self.node_steps += other.node_steps;
+        self.lists += other.lists;
+        self.single_steps += other.single_steps;
     }
 }
 
@@ -48,6 +55,7 @@ pub struct Scratch {
     pub(super) lists: Lists,
     pub(super) crossings: CrossingLists,
     pub(super) sieve: Sieve,
+    reorder: Reorder,
 }
 
 /// Rays that are walked together; ray numbers within such a chunk fit 16 bits.
@@ -80,13 +88,55 @@ impl Query<'_> {
     ) -> Counts {
         assert_eq!(hits.len(), rays.len(), "room for one hit of each ray");
         let mut counts = Counts::default();
-        for chunk in chunks(rays.len()) {
-            hits.clear(chunk.clone());
-            let goal = Closest { primitive: &mut hits.primitive[chunk.clone()] };
-            counts += self.walk_filtered(rays, chunk.clone(), goal, filter, scratch);
-            scratch.rays.found(self.level, &hits.primitive[chunk.clone()], &mut hits.t[chunk.clone()]);
-            self.refine(rays, &mut hits, chunk);
+        let mut done = 0;
+        while done < rays.len() {
+            let chunk = self.next_chunk(&counts, done, rays, filter.is_some());
+            done = chunk.end;
+            if chunk.len() <= CHUNK {
+                counts += self.closest_hits(rays, chunk, filter, &mut hits, scratch);
+            } else {
+                let (_, rest) = hits.reborrow().split_at(chunk.start);
+                let (hits, _) = rest.split_at(chunk.len());
+                counts += self.closest_hits_in_order(rays.slice(chunk), hits, scratch);
+            }
         }
+        counts
+    }
+
+    /// The rays to be walked next, when the first `done` took `counts`: a chunk as it comes, or more, to be put in order. A
+    /// filter knows rays by their numbers, so those that pass one are left in their order.
+    fn next_chunk(&self, counts: &Counts, done: usize, rays: Rays<'_>, is_filtered: bool) -> Range<usize> {
+        let left = rays.slice(done..rays.len());
+        let reorders = self.walk == WalkKind::Auto && !is_filtered && policy::pays_to_reorder(counts, done, left);
+        done..done + left.len().min(if reorders { reorder::MOST } else { CHUNK })
+    }
+
+    /// The first hits of a chunk.
+    fn closest_hits(
+        &self,
+        rays: Rays<'_>,
+        chunk: Range<usize>,
+        filter: Option<Filter<'_>>,
+        hits: &mut HitsMut<'_>,
+        scratch: &mut Scratch,
+    ) -> Counts {
+        hits.clear(chunk.clone());
+        let goal = Closest { primitive: &mut hits.primitive[chunk.clone()] };
+        let counts = self.walk_filtered(rays, chunk.clone(), goal, filter, scratch);
+        scratch.rays.found(self.level, &hits.primitive[chunk.clone()], &mut hits.t[chunk.clone()]);
+        self.refine(rays, hits, chunk);
+        counts
+    }
+
+    /// The first hits of many chunks whose rays are put in order before.
+    fn closest_hits_in_order(&self, rays: Rays<'_>, hits: HitsMut<'_>, scratch: &mut Scratch) -> Counts {
+        let mut counts = Counts::default();
+        let mut reorder = std::mem::take(&mut scratch.reorder);
+        reorder.sort(self.level, rays);
+        reorder.hits(self.level, hits, |rays, mut hits| {
+            counts += self.closest_hits(rays, 0..rays.len(), None, &mut hits, scratch);
+        });
+        scratch.reorder = reorder;
         counts
     }
 
@@ -190,10 +240,36 @@ impl Query<'_> {
         assert_eq!(out.len(), rays.len(), "room for one answer to each ray");
         out.fill(Occlusion::Clear);
         let mut counts = Counts::default();
-        for chunk in chunks(rays.len()) {
+        let mut done = 0;
+        while done < rays.len() {
+            let chunk = self.next_chunk(&counts, done, rays, filter.is_some());
+            done = chunk.end;
             let occlusion = &mut out[chunk.clone()];
-            counts += self.walk_filtered(rays, chunk, Any { occlusion, opaque }, filter, scratch);
+            counts += if chunk.len() <= CHUNK {
+                self.walk_filtered(rays, chunk, Any { occlusion, opaque }, filter, scratch)
+            } else {
+                self.occluded_in_order(rays.slice(chunk), opaque, occlusion, scratch)
+            };
         }
+        counts
+    }
+
+    /// Whether anything lies within the ranges of many chunks of rays, which are put in order before.
+    fn occluded_in_order(
+        &self,
+        rays: Rays<'_>,
+        opaque: Option<&BitSet>,
+        out: &mut [Occlusion],
+        scratch: &mut Scratch,
+    ) -> Counts {
+        let mut counts = Counts::default();
+        let mut reorder = std::mem::take(&mut scratch.reorder);
+        reorder.sort(self.level, rays);
+        reorder.occlusion(self.level, out, |rays, occlusion| {
+            occlusion.fill(Occlusion::Clear);
+            counts += self.walk(rays, 0..rays.len(), &mut Any { occlusion, opaque }, scratch);
+        });
+        scratch.reorder = reorder;
         counts
     }
 

@@ -5,6 +5,7 @@ mod records;
 
 pub(super) use one::OneRay;
 pub(super) use records::Records;
+pub(in crate::tree) use records::transposed;
 
 use super::frustum::PACKET;
 use crate::geometry::sphere::{SphereRay, SphereRays};

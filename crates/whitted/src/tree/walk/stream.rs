@@ -131,6 +131,7 @@ impl Lists {
                     return;
                 }
                 ChildKind::Interior(node) => {
+                    counts.lists += 1;
                     counts.node_steps += len as u64;
                     let node = &walk.tree.nodes[node];
                     current.clear();

@@ -110,6 +110,7 @@ impl Turns {
         // Places that are asked for again and again stay in registers.
         let (paths, entry, child) = (&mut self.paths[..], &mut stack.entry[..], &mut stack.child[..]);
         let (mut way, mut under_way, mut ended) = (0, self.under_way, 0);
+        counts.single_steps += under_way as u64;
         while way < under_way {
             let path = &mut paths[way];
             if path.step(token, walk, entry, child, counts) {

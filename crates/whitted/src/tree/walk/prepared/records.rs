@@ -131,7 +131,7 @@ fn record_spheres<S: Simd>(token: S, origin: Vec3<S::F32x16>, direction: Vec3<S:
 
 /// One record for each lane of eight rows.
 #[inline(always)]
-fn transposed<S: Simd>(token: S, rows: [S::F32x16; 8]) -> [S::F32x8; STEP] {
+pub(in crate::tree) fn transposed<S: Simd>(token: S, rows: [S::F32x16; 8]) -> [S::F32x8; STEP] {
     const HALF: usize = STEP / 2;
     let mut stored = [[0.0; STEP]; 8];
     let mut halves = [[S::F32x8::splat(token, 0.0); 8]; 2];
