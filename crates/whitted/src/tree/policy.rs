@@ -120,9 +120,9 @@ pub(super) fn pays_to_reorder(counts: &Counts, done: usize, left: Rays<'_>) -> b
     chunks >= 2 && steps * chunks as u64 > (done * (chunks + HALF)) as u64 && !share_origins(left)
 }
 
-/// True if most of some rays, evenly spread, start where the next one starts.
+/// True if most of some rays, evenly spread, start where the next one starts. Few, since each waits for the memory.
 fn share_origins(rays: Rays<'_>) -> bool {
-    const SOME: usize = 64;
+    const SOME: usize = 16;
     let starts_with_next = |&index: &usize| rays.get(index).origin == rays.get(index + 1).origin;
     let shared = (0..rays.len() - 1).step_by(rays.len().div_ceil(SOME)).filter(starts_with_next).count();
     2 * shared > SOME
