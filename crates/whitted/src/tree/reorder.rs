@@ -12,9 +12,9 @@
 //! in the same sequence, and so reads from 512 places in turn (docs/decisions/0011).
 
 use super::query::chunks;
-use super::walk::transposed;
+use super::walk::{load, sign, transposed};
 use crate::math::Vec3;
-use crate::ray::{HitBatch, HitsMut, RayBatch, Rays, lanes};
+use crate::ray::{HitBatch, HitsMut, RayBatch, Rays};
 use crate::tree::Occlusion;
 use simd::{F32Lanes, Kernel, Level, Octet, Simd, U32Lanes};
 use std::ops::Range;
@@ -171,12 +171,6 @@ impl Grid {
     }
 }
 
-/// The sign bit as 0 or 1.
-#[inline(always)]
-fn sign<F: F32Lanes>(component: F) -> F::U32 {
-    component.to_bits().shr::<31>()
-}
-
 /// How many cells a grid has along each axis: the longest is halved until there are enough.
 fn sides(mut extent: [f32; 3]) -> [f32; 3] {
     let mut sides = [1.0; 3];
@@ -204,8 +198,8 @@ impl Kernel for Sort<'_> {
         let mut counts = [0u32; CELLS];
         for first in (0..rays.len()).step_by(LANES) {
             let step = first..rays.len().min(first + LANES);
-            let origin = load(token, rays.origin, &step);
-            let direction = load(token, rays.direction, &step);
+            let origin = load(token, rays.origin, step.clone());
+            let direction = load(token, rays.direction, step.clone());
             let mut stored = [0; LANES];
             grid.cells(token, origin, direction).store(&mut stored);
             for (cell, stored) in cells[first..first + LANES].iter_mut().zip(stored) {
@@ -223,7 +217,7 @@ impl Kernel for Sort<'_> {
         let mut cursor = Cursor(*starts.first_chunk().expect("a start for each cell"));
         for first in (0..rays.len()).step_by(LANES) {
             let step = first..rays.len().min(first + LANES);
-            let (o, d) = (load(token, rays.origin, &step), load(token, rays.direction, &step));
+            let (o, d) = (load(token, rays.origin, step.clone()), load(token, rays.direction, step.clone()));
             let range = [rays.t_min.lanes(token, step.clone()), rays.t_max.lanes(token, step.clone())];
             let columns = transposed(token, [o.x, o.y, o.z, d.x, d.y, d.z, range[0], range[1]]);
             for (column, &cell) in columns[..step.len()].iter().zip(&cells[step]) {
@@ -233,15 +227,6 @@ impl Kernel for Sort<'_> {
             }
         }
     }
-}
-
-#[inline(always)]
-fn load<S: Simd>(token: S, rows: Vec3<&[f32]>, step: &Range<usize>) -> Vec3<S::F32x16> {
-    Vec3::new(
-        lanes(token, rows.x, step.clone()),
-        lanes(token, rows.y, step.clone()),
-        lanes(token, rows.z, step.clone()),
-    )
 }
 
 /// Makes rows of records.

@@ -14,8 +14,8 @@ pub(super) use alone::{Alone, HitAlone, refined};
 pub(super) use frustum::PACKET;
 pub(super) use prepared::PreparedRays;
 pub(crate) use prepared::sound;
-pub(super) use prepared::transposed;
 use prepared::{Packets, Records};
+pub(super) use prepared::{load, sign, transposed};
 pub(super) use stream::Lists;
 
 use super::Tree;

@@ -5,7 +5,7 @@ mod records;
 
 pub(super) use one::OneRay;
 pub(super) use records::Records;
-pub(in crate::tree) use records::transposed;
+pub(in crate::tree) use records::{sign, transposed};
 
 use super::frustum::PACKET;
 use crate::geometry::sphere::{SphereRay, SphereRays};
@@ -371,7 +371,8 @@ pub(crate) fn sound<F: F32Lanes>(token: F::Token, origin: Vec3<F>, direction: Ve
     sound_size & reach.lt(F::splat(token, f32::INFINITY))
 }
 
+/// The vectors of a step of rows; 0 beyond its end.
 #[inline(always)]
-fn load<S: Simd>(token: S, rows: Vec3<&[f32]>, range: Range<usize>) -> Vec3<S::F32x16> {
+pub(in crate::tree) fn load<S: Simd>(token: S, rows: Vec3<&[f32]>, range: Range<usize>) -> Vec3<S::F32x16> {
     Vec3::new(lanes(token, rows.x, range.clone()), lanes(token, rows.y, range.clone()), lanes(token, rows.z, range))
 }

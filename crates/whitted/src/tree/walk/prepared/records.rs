@@ -162,7 +162,7 @@ fn grow<T: Clone + Default>(elements: &mut Vec<T>, len: usize) {
 
 /// The sign bit as 0 or 1.
 #[inline(always)]
-fn sign<F: F32Lanes>(component: F) -> F::U32 {
+pub(in crate::tree) fn sign<F: F32Lanes>(component: F) -> F::U32 {
     component.to_bits().shr::<31>()
 }
 
