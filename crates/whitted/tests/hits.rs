@@ -124,6 +124,44 @@ fn strewn(rng: &mut SplitMix64) -> Primitives {
     primitives
 }
 
+/// Rays from one point into fine detail: packets begin large and are halved, each half with what waits for it.
+#[test]
+fn packets_that_are_halved_find_what_lists_find() {
+    let mut rng = SplitMix64::new(4);
+    let primitives = strewn(&mut rng);
+    // Four tiles of 8 by 8 into the scene, then eight away from it, which let packets grow again.
+    let rays: RayBatch = (0..3 * 96 * 64)
+        .map(|i| {
+            let (tile, place) = (i / 64 / 12 * 4 + i / 64 % 4, i % 64);
+            let (x, y) = (tile % 12 * 8 + place % 8, tile / 12 * 8 + place / 8);
+            let into = [x as f32 / 40.0, y as f32 / 30.0, 3.0];
+            let mut ray = Ray::new([-1.5, -1.4, -3.0], if i / 64 % 12 < 4 { into } else { [0.1, -3.0, 0.2] });
+            ray.t_max = rng.uniform(0.5, 3.0) as f32;
+            ray
+        })
+        .collect::<Vec<_>>()
+        .iter()
+        .collect();
+    let tree = Tree::build(&primitives, &TreeKind::Best.into());
+    let mut scratch = Scratch::default();
+    let (mut expected, mut expected_any) = (HitBatch::default(), Vec::new());
+    let query = |level, walk| Query { tree: &tree, primitives: &primitives, level, walk };
+    let stream = query(simd::Level::best(), WalkKind::Stream);
+    let in_lists = stream.closest_hit(&rays, &mut expected, &mut scratch);
+    stream.occluded(&rays, None, &mut expected_any, &mut scratch);
+    for level in simd::Level::available() {
+        let (mut found, mut any) = (HitBatch::default(), Vec::new());
+        let auto = query(level, WalkKind::Auto);
+        let counts = auto.closest_hit(&rays, &mut found, &mut scratch);
+        assert_eq!(bits(&found), bits(&expected), "{level:?}");
+        assert!(20 * counts.lists < in_lists.lists, "few need lists: {counts:?}, else {in_lists:?}");
+        auto.occluded(&rays, None, &mut any, &mut scratch);
+        assert_eq!(any, expected_any, "{level:?}");
+    }
+    let hits = expected.primitive.iter().filter(|&&id| id != NONE).count();
+    assert!((rays.len() / 12..rays.len() / 3).contains(&hits), "some rays hit: {hits} of {}", rays.len());
+}
+
 /// A batch so large that the rest of it is put in order when its first chunk had much to do.
 #[test]
 fn rays_that_were_put_in_order_find_what_they_find_in_theirs() {
@@ -179,7 +217,10 @@ fn every_walk_finds_the_hits_of_brute_force() {
         let rays: Vec<_> = if seed % 2 == 0 {
             (0..per_scene).map(|_| common::ray(&mut rng, &primitives)).collect()
         } else {
-            (0..per_scene / 64).flat_map(|_| common::packet(&mut rng, &primitives)).collect()
+            std::iter::repeat_with(|| common::packet(&mut rng, &primitives))
+                .flatten()
+                .take(per_scene as usize)
+                .collect()
         };
         hits += compare(&primitives, &rays.iter().collect(), seed);
     }

@@ -50,7 +50,7 @@ impl PixelRect {
     }
 
     /// Tile by tile, call `visit` with the coordinates of every pixel: rays in this order have close neighbours, and the
-    /// 64 of a tile that is not cut off make a packet.
+    /// 64 of a tile that is not cut off make a packet, often with those of its neighbours.
     pub(super) fn for_each_in_tiles(&self, mut visit: impl FnMut([u32; 2])) {
         self.for_each_row_of_tiles(|y, columns| columns.for_each(|x| visit([x, y])));
     }

@@ -2,7 +2,7 @@
 //!
 //! | rays | walk | measured |
 //! | --- | --- | --- |
-//! | 64 with one origin and one main axis: of a camera, of a light | packet, bounded by a pyramid | decisions 2 and 4 |
+//! | 64 to 256 with one origin and one main axis: of a camera, of a light | packet, bounded by a pyramid | decisions 2, 4 and 12 |
 //! | others, many at a time | lists that go down the tree together, short ones in turns | decisions 6 and 10 |
 //! | very many of them, whose lists soon become short | the same, put in order before | decision 11 |
 //! | one | by itself | decision 9 |
@@ -43,7 +43,7 @@ pub enum Origins {
 pub enum Way {
     /// There is no tree: each ray against each primitive.
     BruteForce,
-    /// Packets of 64 rays, each bounded by a pyramid; what makes none, as lists.
+    /// Packets of 64 to 256 rays, each bounded by a pyramid; what makes none, as lists.
     Packets,
     /// Lists of rays that go down the tree together, short ones in turns.
     Lists,
@@ -132,7 +132,7 @@ impl fmt::Display for Way {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::BruteForce => "against every primitive",
-            Self::Packets => "in packets of 64, the rest in lists",
+            Self::Packets => "in packets of 64 to 256, the rest in lists",
             Self::Lists => "in lists, short ones in turns",
             Self::OneByOne => "one by one",
         })

@@ -114,19 +114,20 @@ pub(crate) fn ray(rng: &mut SplitMix64, primitives: &Primitives) -> Ray {
     ray
 }
 
-/// Sixty-four rays from one origin towards neighbouring points, as from a camera or a light; some packets are wide,
+/// Sixty-four to 320 rays from one origin towards neighbouring points, as from a camera or a light; some packets are wide,
 /// some have odd rays among them, or rays between two dominant axes.
 pub(crate) fn packet(rng: &mut SplitMix64, primitives: &Primitives) -> Vec<Ray> {
     let lead = ray(rng, primitives);
     let width = [0.001, 0.05, 1.0][rng.below(3) as usize] * f64::from(lead.direction.abs().max_component());
-    let mut rays: Vec<Ray> = (0..64)
+    let count = 64 * (1 + rng.below(5));
+    let mut rays: Vec<Ray> = (0..count)
         .map(|_| {
             let spread = Vec3::new((), (), ()).map(|()| rng.uniform(-width, width) as f32);
             Ray { direction: lead.direction + spread, ..lead }
         })
         .collect();
     match rng.below(6) {
-        0 => rays[rng.below(64) as usize] = ray(rng, primitives),
+        0 => rays[rng.below(count) as usize] = ray(rng, primitives),
         2 => rays.iter_mut().for_each(|ray| ray.direction.y = ray.direction.x),
         3 => rays.iter_mut().step_by(3).for_each(|ray| ray.direction.z = -ray.direction.x),
         1 => rays.iter_mut().for_each(|ray| ray.t_max = rng.uniform(0.0, 2.0) as f32),

@@ -65,11 +65,13 @@ impl<G: Goal> Walk<'_, G> {
         }
         let mut walked = Packets::default();
         let mut stack = std::mem::take(&mut self.lists.stack);
-        for packet in 0..self.rays.len() / PACKET {
-            if frustum::walk(token, self, &mut stack, packet * PACKET, counts) {
-                walked.insert(packet);
-            }
+        let mut packet = self.lists.packet.take().unwrap_or_default();
+        packet.begin();
+        let mut first = 0;
+        while first + PACKET <= self.rays.len() {
+            first += frustum::walk(token, self, &mut stack, &mut packet, first, &mut walked, counts);
         }
+        self.lists.packet = Some(packet);
         self.lists.stack = stack;
         walked
     }

@@ -12,6 +12,7 @@
 //! keeps the order from near to far; the rays of all waiting streams take turns.
 
 use super::abreast;
+use super::frustum::Packet;
 use super::slabs::Slabs;
 use super::turns::{self, Stack, Turns};
 use super::{PreparedRays, Walk};
@@ -48,6 +49,8 @@ pub(in crate::tree) struct Lists {
     masks: Vec<u16>,
     turns: Turns,
     pub(super) stack: Stack,
+    /// Made when it is needed: it is large.
+    pub(super) packet: Option<Box<Packet>>,
 }
 
 /// The lists of one octant.
@@ -120,7 +123,7 @@ impl Lists {
         // From a light, what blocks neighbours is most of all what lies near them: the far end of the rays is visited first.
         let order = if G::ENDS_RAYS && walk.has_one_origin() { octant ^ 7 } else { octant };
         let min_list = if walk.tree.is_far() { MIN_LIST_FAR } else { MIN_LIST };
-        let Self { streams, current, masks, turns, stack } = self;
+        let Self { streams, current, masks, turns, stack, .. } = self;
         let stream = &mut streams[octant];
         while let Some((child, len)) = stream.waiting.pop() {
             stream.top -= len;

@@ -1,168 +1,140 @@
-//! Sixty-four rays as rows: what they are, and their tests against primitives.
+//! Rays of one packet, and their tests against the blocks of a leaf.
 
 use super::super::Walk;
+use super::group::Group;
 use super::pyramid::{Edges, Pyramid};
-use super::{LANES, PACKET, ROWS};
-use crate::geometry::sphere::{self, SphereRays};
-use crate::geometry::triangle::{self, ShearedRays, dominant_axis, renamed};
+use super::{GROUPS, LANES, PACKET, PATIENCE};
+use crate::geometry::splat;
+use crate::geometry::triangle::dominant_axis;
 use crate::math::Vec3;
-use crate::ray::{self, NONE};
 use crate::tree::goal::Goal;
-use simd::{F32Lanes, MaskLanes, Simd, U32Lanes};
+use simd::{F32Lanes, MaskLanes, Simd};
+use std::ops::Range;
 
-/// A row of one value per ray.
-#[derive(Clone, Copy)]
-#[repr(C, align(64))]
-pub(super) struct Row([f32; PACKET]);
-
-impl Row {
-    #[inline(always)]
-    pub(super) fn load<S: Simd>(&self, token: S, row: usize) -> S::F32x16 {
-        S::F32x16::load_slice(token, &self.0[LANES * row..])
-    }
-
-    #[inline(always)]
-    fn store<S: Simd>(&mut self, row: usize, lanes: S::F32x16) {
-        lanes.store_slice(&mut self.0[LANES * row..]);
-    }
-}
-
-/// Rays with one origin and one dominant axis.
-pub(super) struct Packet {
-    /// In the tree's scale.
-    pub(super) origin: Vec3<f32>,
-    direction: [Row; 3],
-    /// See [`ShearedRays::shear`].
-    pub(super) shear: [Row; 3],
-    t_min: Row,
-    limit: Row,
-    /// What is not settled yet, see [`Goal::offer_lanes`].
-    found: [[u32; LANES]; ROWS],
-    /// Their numbers in the chunk.
-    ids: [[u16; LANES]; ROWS],
+/// What the rays of a packet have in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    /// Where they start, as the caller gave it.
+    pub(super) apex: Vec3<f32>,
+    /// Along which they mostly run.
     pub(super) axis: usize,
-    /// True if the rays run towards smaller coordinates of the dominant axis.
+    /// True if they run towards smaller coordinates of that axis.
     pub(super) backward: bool,
     /// Signs of the first direction, by which children are ordered.
     pub(super) octant: usize,
 }
 
-impl Packet {
-    /// The rays from `first` on, if they make a packet: full, one origin, one dominant axis and sense, no negative t.
+impl Frame {
+    /// Of the ray `first` of the chunk.
     #[inline(always)]
-    pub(super) fn new<S: Simd, G: Goal>(token: S, walk: &Walk<'_, G>, first: usize) -> Option<Self> {
+    fn new<G: Goal>(walk: &Walk<'_, G>, first: usize) -> Self {
         let start = walk.start + first;
-        let rows = |row: &[f32]| Row(*row[start..].first_chunk().expect("a whole packet"));
         let (o, d) = (walk.batch.origin, walk.batch.direction);
-        let apex = Vec3::new(o.x[start], o.y[start], o.z[start]);
-        if !(same(token, &o.x[start..], apex.x)
-            && same(token, &o.y[start..], apex.y)
-            && same(token, &o.z[start..], apex.z))
-        {
-            return None;
-        }
         let along = Vec3::new(d.x[start], d.y[start], d.z[start]);
         let axis = dominant_axis(along);
-        let octant = [along.x, along.y, along.z].map(|component| usize::from(component.is_sign_negative()));
-        let mut packet = Self {
-            origin: apex * walk.tree.scale(),
-            direction: [rows(d.x), rows(d.y), rows(d.z)],
-            shear: [Row([0.0; PACKET]); 3],
-            t_min: match walk.batch.t_min {
-                ray::Row::Each(t_min) => rows(t_min),
-                ray::Row::All(t_min) => Row([t_min; PACKET]),
-            },
-            limit: Row(*walk.rays.limits(first)),
-            found: [[NONE; LANES]; ROWS],
-            ids: numbers(first),
+        let negative = [along.x, along.y, along.z].map(|component| usize::from(component.is_sign_negative()));
+        Self {
+            apex: Vec3::new(o.x[start], o.y[start], o.z[start]),
             axis,
-            backward: octant[axis] != 0,
-            octant: octant[0] | octant[1] << 1 | octant[2] << 2,
-        };
-        packet.prepare(token, walk.tree.scale()).then_some(packet)
+            backward: negative[axis] != 0,
+            octant: negative[0] | negative[1] << 1 | negative[2] << 2,
+        }
+    }
+}
+
+/// Rays with one origin and one dominant axis, in groups; memory that is filled anew for each packet.
+#[derive(Debug)]
+pub(in crate::tree::walk) struct Packet {
+    pub(super) frame: Frame,
+    /// In the tree's scale.
+    pub(super) origin: Vec3<f32>,
+    pub(super) groups: [Group; GROUPS],
+    /// How many of them to take next, at most.
+    width: usize,
+}
+
+impl Default for Packet {
+    fn default() -> Self {
+        let frame = Frame { apex: Vec3::<f32>::ZERO, axis: 0, backward: false, octant: 0 };
+        Self { frame, origin: frame.apex, groups: [Group::EMPTY; GROUPS], width: GROUPS }
+    }
+}
+
+impl Packet {
+    /// Forget how large the last one was.
+    pub(in crate::tree::walk) fn begin(&mut self) {
+        self.width = GROUPS;
     }
 
-    /// Ask the memory for the packet's worth of rays from `first` on.
+    /// Take as many groups from `first` on as make one packet: full, one origin, one dominant axis and sense, no negative t;
+    /// returns how many.
     #[inline(always)]
-    pub(super) fn prefetch<G: Goal>(walk: &Walk<'_, G>, first: usize) {
+    pub(super) fn take<S: Simd, G: Goal>(&mut self, token: S, walk: &Walk<'_, G>, first: usize) -> usize {
+        self.frame = Frame::new(walk, first);
+        self.origin = self.frame.apex * walk.tree.scale();
+        let mut taken = 0;
+        for group in &mut self.groups[..self.width] {
+            let first = first + PACKET * taken;
+            if first + PACKET > walk.rays.len() || !group.take(token, walk, first, &self.frame) {
+                break;
+            }
+            taken += 1;
+        }
+        taken
+    }
+
+    /// Take as many next time as had enough in common now: whether this packet was halved, and what its rays tested.
+    #[inline(always)]
+    pub(super) fn adapt(&mut self, is_halved: bool, tests: u64) {
+        if is_halved {
+            self.width = (self.width / 2).max(1);
+        } else if tests <= PATIENCE.into() {
+            self.width = (self.width * 2).min(GROUPS);
+        }
+    }
+
+    /// Ask the memory for so many rays from `first` on.
+    #[inline(always)]
+    pub(super) fn prefetch<G: Goal>(walk: &Walk<'_, G>, first: usize, count: usize) {
         let start = walk.start + first;
         let (o, d) = (walk.batch.origin, walk.batch.direction);
         for row in [o.x, o.y, o.z, d.x, d.y, d.z] {
-            for step in 0..ROWS {
-                simd::prefetch(row, start + step * LANES);
+            for ray in (0..count).step_by(LANES) {
+                simd::prefetch(row, start + ray);
             }
         }
     }
 
-    /// Scale and shear the directions; false if a ray has another dominant axis or sense, or a range that begins before
-    /// its origin.
+    /// The greatest distance along the dominant axis at which a ray of `part` may still hit.
     #[inline(always)]
-    fn prepare<S: Simd>(&mut self, token: S, scale: f32) -> bool {
-        let [x, y, z] = renamed(self.axis);
-        let zero = S::F32x16::splat(token, 0.0);
-        let mut sound = zero.le(zero);
-        for row in 0..ROWS {
-            let scale = S::F32x16::splat(token, scale);
-            let d = [
-                self.direction[0].load(token, row) * scale,
-                self.direction[1].load(token, row) * scale,
-                self.direction[2].load(token, row) * scale,
-            ];
-            let (dx, dy, dz) = (d[x], d[y], d[z]);
-            let ahead = if self.backward { dz.lt(zero) } else { zero.lt(dz) };
-            sound = sound & ahead & is_dominant(d, self.axis);
-            sound = sound & zero.le(self.t_min.load(token, row));
-            self.shear[0].store::<S>(row, dx / dz);
-            self.shear[1].store::<S>(row, dy / dz);
-            self.shear[2].store::<S>(row, S::F32x16::splat(token, 1.0) / dz);
-            self.direction[0].store::<S>(row, d[0]);
-            self.direction[1].store::<S>(row, d[1]);
-            self.direction[2].store::<S>(row, d[2]);
-        }
-        sound.all()
-    }
-
-    /// The greatest distance along the dominant axis at which a ray may still hit.
-    #[inline(always)]
-    pub(super) fn reach<S: Simd>(&self, token: S) -> f32 {
+    pub(super) fn reach<S: Simd>(&self, token: S, part: Range<usize>) -> f32 {
         let mut reach = S::F32x16::splat(token, f32::NEG_INFINITY);
-        for row in 0..ROWS {
-            let distance = self.limit.load(token, row) * self.direction[self.axis].load(token, row).abs();
-            reach = distance.max(reach);
+        for group in &self.groups[part] {
+            reach = group.reach(token, self.frame.axis, reach);
         }
         // One rounding of the product: the next but one number up is no less than the exact one.
         let reach = reach.reduce_max();
         if reach < f32::INFINITY { reach.next_up().next_up() } else { reach }
     }
 
-    /// True if all rays have ended.
+    /// True if all rays of `part` have ended.
     #[inline(always)]
-    pub(super) fn has_ended<S: Simd>(&self, token: S) -> bool {
+    pub(super) fn has_ended<S: Simd>(&self, token: S, part: Range<usize>) -> bool {
         let zero = S::F32x16::splat(token, 0.0);
-        let mut ended = self.limit.load(token, 0).lt(zero);
-        for row in 1..ROWS {
-            ended = ended & self.limit.load(token, row).lt(zero);
+        let mut ended = zero.le(zero);
+        for group in &self.groups[part] {
+            ended = ended & group.ended(token);
         }
         ended.all()
     }
 
-    /// Write the rays' limits back, and settle what they found.
-    #[inline(always)]
-    pub(super) fn finish<S: Simd, G: Goal>(&self, token: S, walk: &mut Walk<'_, G>, first: usize) {
-        *walk.rays.limits_mut(first) = self.limit.0;
-        for row in 0..ROWS {
-            let found = <S::F32x16 as F32Lanes>::U32::load(token, &self.found[row]);
-            walk.goal.settle_row::<S::F32x16>(token, first + LANES * row, found);
-        }
-    }
-
-    /// Test the triangles of a block that the pyramid touches; returns how many.
+    /// Test the rays of `part` against the triangles of a block that the pyramid touches; returns how many.
     #[inline(always)]
     pub(super) fn triangles<S: Simd, G: Goal>(
         &mut self,
         token: S,
-        pyramid: &Pyramid,
         walk: &mut Walk<'_, G>,
+        (pyramid, part): (&Pyramid, Range<usize>),
         block: usize,
     ) -> u32 {
         let block = &walk.tree.leaves.triangles[block];
@@ -170,147 +142,53 @@ impl Packet {
         let mut survivors = pyramid.touches_triangles(token, block, &mut edges);
         let count = survivors.count_ones();
         let [x, y, z] = pyramid.axes;
-        let origin = crate::geometry::splat(token, [self.origin[x], self.origin[y], self.origin[z]]);
-        let zero = S::F32x16::splat(token, 0.0);
+        let origin = splat(token, [self.origin[x], self.origin[y], self.origin[z]]);
         while survivors != 0 {
             let lane = survivors.trailing_zeros() as usize % 8;
             survivors &= survivors - 1;
             let planes = edges.planes(token, lane);
             let vertices = [
-                crate::geometry::splat(token, block.corner(0, lane, pyramid.axes)),
-                crate::geometry::splat(token, block.corner(1, lane, pyramid.axes)),
-                crate::geometry::splat(token, block.corner(2, lane, pyramid.axes)),
+                splat(token, block.corner(0, lane, pyramid.axes)),
+                splat(token, block.corner(1, lane, pyramid.axes)),
+                splat(token, block.corner(2, lane, pyramid.axes)),
             ];
-            for row in 0..ROWS {
-                let [x, y] = [self.shear[0].load(token, row), self.shear[1].load(token, row)];
-                let limit = self.limit.load(token, row);
-                let mut excluded = planes.exclude(x, y);
-                if G::ENDS_RAYS {
-                    excluded = excluded | limit.lt(zero);
-                }
-                if excluded.all() {
-                    continue;
-                }
-                let rays = ShearedRays { origin, shear: [x, y, self.shear[2].load(token, row)] };
-                let found = triangle::intersect(token, &rays, vertices, self.t_min.load(token, row), limit);
-                self.offer(token, walk.goal, row, found, block.primitive(lane));
+            for group in &mut self.groups[part.clone()] {
+                group.triangle(token, walk.goal, (origin, vertices), &planes, block.primitive(lane));
             }
         }
         count
     }
 
-    /// Test the spheres of a block that the pyramid touches; returns how many.
+    /// Test the rays of `part` against the spheres of a block that the pyramid touches; returns how many.
     #[inline(always)]
     pub(super) fn spheres<S: Simd, G: Goal>(
         &mut self,
         token: S,
-        pyramid: &Pyramid,
         walk: &mut Walk<'_, G>,
+        (pyramid, part): (&Pyramid, Range<usize>),
         block: usize,
     ) -> u32 {
         let block = &walk.tree.leaves.spheres[block];
         let mut survivors = pyramid.touches_spheres(token, block);
         let count = survivors.count_ones();
-        let origin = crate::geometry::splat(token, self.origin.to_array());
-        let (zero, one) = (S::F32x16::splat(token, 0.0), S::F32x16::splat(token, 1.0));
+        let origin = splat(token, self.origin.to_array());
         while survivors != 0 {
             let lane = survivors.trailing_zeros() as usize % 8;
             survivors &= survivors - 1;
-            let center = crate::geometry::splat(token, block.center(lane));
+            let center = splat(token, block.center(lane));
             let radius_squared = S::F32x16::splat(token, block.radius_squared(lane));
-            for row in 0..ROWS {
-                let (t_min, limit) = (self.t_min.load(token, row), self.limit.load(token, row));
-                if G::ENDS_RAYS && limit.lt(zero).all() {
-                    continue;
-                }
-                let direction = [
-                    self.direction[0].load(token, row),
-                    self.direction[1].load(token, row),
-                    self.direction[2].load(token, row),
-                ];
-                let inverse_length_squared = one / Vec3::from(direction).length_squared();
-                let rays = SphereRays { origin, direction, inverse_length_squared };
-                let roots = sphere::roots(&rays, center, radius_squared);
-                let (hit, t) = sphere::first_in_range(roots, t_min, limit);
-                let id = block.primitive(lane);
-                self.offer(token, walk.goal, row, (hit, t), id);
-                if G::EVERY_CROSSING {
-                    let (far, limit) = (roots.1, self.limit.load(token, row));
-                    self.offer(token, walk.goal, row, (t_min.le(far) & far.le(limit), far), id);
-                }
+            for group in &mut self.groups[part.clone()] {
+                group.sphere(token, walk.goal, origin, (center, radius_squared), block.primitive(lane));
             }
         }
         count
     }
 
-    /// Offer what the rays of a row hit at `t`. No jump asks whether any does: it could not be guessed.
+    /// Write back what the first `count` groups found.
     #[inline(always)]
-    fn offer<S: Simd, G: Goal>(
-        &mut self,
-        token: S,
-        goal: &mut G,
-        row: usize,
-        (hit, t): (<S::F32x16 as F32Lanes>::Mask, S::F32x16),
-        primitive: u32,
-    ) {
-        let limit = self.limit.load(token, row);
-        let mut found = <S::F32x16 as F32Lanes>::U32::load(token, &self.found[row]);
-        let limit = goal.offer_lanes(token, &self.ids[row], hit, t, primitive, limit, &mut found);
-        self.limit.store::<S>(row, limit);
-        found.store(&mut self.found[row]);
-    }
-}
-
-/// The numbers from `first` on.
-#[inline(always)]
-fn numbers(first: usize) -> [[u16; LANES]; ROWS] {
-    let mut numbers = [[first as u16; LANES]; ROWS];
-    for (offset, number) in (0..).zip(numbers.as_flattened_mut()) {
-        *number += offset;
-    }
-    numbers
-}
-
-/// The lanes whose dominant axis is `axis`, by the rule of [`dominant_axis`]: of equals the first.
-#[inline(always)]
-fn is_dominant<F: F32Lanes>(direction: [F; 3], axis: usize) -> F::Mask {
-    let [x, y, z] = renamed(axis);
-    dominated(direction[x], direction[z], x < z) & dominated(direction[y], direction[z], y < z)
-}
-
-/// True where `component` does not take the place of `dominant`; `is_first` says who wins a tie.
-#[inline(always)]
-fn dominated<F: F32Lanes>(component: F, dominant: F, is_first: bool) -> F::Mask {
-    if is_first { component.abs().lt(dominant.abs()) } else { component.abs().le(dominant.abs()) }
-}
-
-/// True if the first [`PACKET`] values of a row equal `value`.
-#[inline(always)]
-fn same<S: Simd>(token: S, row: &[f32], value: f32) -> bool {
-    let value = S::F32x16::splat(token, value);
-    let mut equal = value.eq(value);
-    for start in (0..PACKET).step_by(LANES) {
-        equal = equal & S::F32x16::load_slice(token, &row[start..]).eq(value);
-    }
-    equal.all()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use simd::{Scalar, ScalarF32};
-
-    #[test]
-    fn a_tie_of_axes_is_settled_as_for_single_rays() {
-        let components = [-2.0, -1.0, -0.0, 1.0, 2.0];
-        let lane = |value: f32| ScalarF32::<1>::splat(Scalar, value);
-        for (x, y, z) in
-            components.iter().flat_map(|x| components.iter().flat_map(move |y| components.map(|z| (*x, *y, z))))
-        {
-            for axis in 0..3 {
-                let expected = dominant_axis(Vec3::new(x, y, z)) == axis;
-                assert_eq!(is_dominant([lane(x), lane(y), lane(z)], axis).any(), expected, "{x} {y} {z}, axis {axis}");
-            }
+    pub(super) fn finish<S: Simd, G: Goal>(&self, token: S, walk: &mut Walk<'_, G>, count: usize) {
+        for group in &self.groups[..count] {
+            group.finish(token, walk);
         }
     }
 }

@@ -1,13 +1,15 @@
 //! The four planes around a packet, and what lies outside of them.
 
 use super::super::Walk;
-use super::ROWS;
-use super::packet::{Packet, Row};
+use super::LANES;
+use super::group::Group;
+use super::packet::{Frame, Packet};
 use crate::geometry::triangle::renamed;
 use crate::tree::goal::Goal;
 use crate::tree::leaf::{SphereBlock, TriangleBlock};
 use crate::tree::node::Node;
 use simd::{F32Lanes, MaskLanes, Simd, U32Lanes};
+use std::ops::Range;
 
 /// The pyramid around a packet, in renamed axes: planes `x − slope·z = offset`, the apex being the origin.
 pub(super) struct Pyramid {
@@ -16,6 +18,8 @@ pub(super) struct Pyramid {
     apex: [f32; 3],
     /// Slopes of the planes below and above along x, then y, to the distance along the dominant axis.
     slope: [[f32; 2]; 2],
+    /// How long their normals are: only where there are spheres.
+    length: [[f32; 2]; 2],
     /// How far outside its box a primitive may be found (padding included), and outside of itself.
     slack: f32,
     primitive_slack: f32,
@@ -25,20 +29,23 @@ pub(super) struct Pyramid {
 
 impl Pyramid {
     #[inline(always)]
-    pub(super) fn around<S: Simd, G: Goal>(token: S, walk: &Walk<'_, G>, packet: &Packet) -> Self {
-        let axes = renamed(packet.axis);
+    pub(super) fn around<S: Simd, G: Goal>(token: S, walk: &Walk<'_, G>, packet: &Packet, part: Range<usize>) -> Self {
+        let Frame { axis, backward, .. } = packet.frame;
+        let axes = renamed(axis);
         let distance = packet.origin.abs().max_component();
         // Slopes are taken to the distance along the axis, which is positive, not to the coordinate.
-        let sign = if packet.backward { -1.0 } else { 1.0 };
-        let [x, y, _] = &packet.shear;
+        let sign = S::F32x16::splat(token, if backward { -1.0 } else { 1.0 });
+        let slope =
+            [range(token, &packet.groups[part.clone()], 0, sign), range(token, &packet.groups[part.clone()], 1, sign)];
         Self {
             axes,
-            backward: packet.backward,
-            apex: axes.map(|axis| packet.origin[axis]),
-            slope: [range(token, x, sign), range(token, y, sign)],
+            backward,
+            apex: [packet.origin[axes[0]], packet.origin[axes[1]], packet.origin[axes[2]]],
+            slope,
+            length: [[length(slope[0][0]), length(slope[0][1])], [length(slope[1][0]), length(slope[1][1])]],
             slack: walk.tree.packet_slack(distance),
             primitive_slack: walk.tree.primitive_slack(distance),
-            reach: packet.reach(token),
+            reach: packet.reach(token, part),
         }
     }
 
@@ -168,12 +175,9 @@ impl Pyramid {
         let mut touched = S::F32x8::splat(token, 0.0).le(center[2] + radius)
             & (center[2] - radius).le(S::F32x8::splat(token, self.reach));
         for axis in 0..2 {
-            for (side, slope) in self.slope[axis].into_iter().enumerate() {
-                let slope = S::F32x8::splat(token, slope);
-                let distance = center[axis] - slope * center[2];
-                // The planes' normals are longer than one.
-                let length = (slope * slope + S::F32x8::splat(token, 1.0)).sqrt();
-                let margin = radius * length + slack;
+            for side in 0..2 {
+                let distance = center[axis] - S::F32x8::splat(token, self.slope[axis][side]) * center[2];
+                let margin = radius * S::F32x8::splat(token, self.length[axis][side]) + slack;
                 touched = touched & if side == 0 { (-margin).le(distance) } else { distance.le(margin) };
             }
         }
@@ -188,16 +192,20 @@ impl Pyramid {
     }
 }
 
-/// The least and the greatest value of a row times a sign.
+/// The least and the greatest shear of some groups along an axis, times a sign.
 #[inline(always)]
-fn range<S: Simd>(token: S, row: &Row, sign: f32) -> [f32; 2] {
-    let sign = S::F32x16::splat(token, sign);
-    let (mut least, mut greatest) = (row.load(token, 0) * sign, row.load(token, 0) * sign);
-    for i in 1..ROWS {
-        least = least.min(row.load(token, i) * sign);
-        greatest = greatest.max(row.load(token, i) * sign);
+fn range<F: F32Lanes<Array = [f32; LANES]>>(token: F::Token, groups: &[Group], axis: usize, sign: F) -> [f32; 2] {
+    let mut span = [F::splat(token, f32::INFINITY), F::splat(token, f32::NEG_INFINITY)];
+    for group in groups {
+        span = group.span(token, axis, sign, span);
     }
-    [least.reduce_min(), greatest.reduce_max()]
+    [span[0].reduce_min(), span[1].reduce_max()]
+}
+
+/// Of the normal of a plane with this slope.
+#[inline(always)]
+fn length(slope: f32) -> f32 {
+    (slope * slope + 1.0).sqrt()
 }
 
 /// Fewer triangles of a block than this are not worth the planes through their edges.
