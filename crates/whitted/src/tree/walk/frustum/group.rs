@@ -63,24 +63,46 @@ impl Group {
         first: 0,
     };
 
-    /// Take the rays from `first` on; false if one does not fit the frame, or has a range that begins before its origin.
+    /// Whether the rays from `first` on fit the frame, and none has a range that begins before its origin. Asked before
+    /// anything is divided: where lights see many surfaces, every other group does not.
     #[inline(always)]
-    pub(super) fn take<S: Simd, G: Goal>(&mut self, token: S, walk: &Walk<'_, G>, first: usize, frame: &Frame) -> bool {
+    pub(super) fn fits<S: Simd, G: Goal>(token: S, walk: &Walk<'_, G>, first: usize, frame: &Frame) -> bool {
         let start = walk.start + first;
-        let origin = walk.batch.origin;
-        if !(same(token, &origin.x[start..], frame.apex.x)
-            && same(token, &origin.y[start..], frame.apex.y)
-            && same(token, &origin.z[start..], frame.apex.z))
+        let (o, d) = (walk.batch.origin, walk.batch.direction);
+        if !(same(token, &o.x[start..], frame.apex.x)
+            && same(token, &o.y[start..], frame.apex.y)
+            && same(token, &o.z[start..], frame.apex.z))
         {
             return false;
         }
+        let [.., z] = renamed(frame.axis);
+        let zero = S::F32x16::splat(token, 0.0);
+        // As they will be: tiny ones may vanish.
+        let scale = S::F32x16::splat(token, walk.tree.scale());
+        let mut sound = zero.le(zero);
+        for row in 0..ROWS {
+            let start = start + LANES * row;
+            let d = [
+                S::F32x16::load_slice(token, &d.x[start..]) * scale,
+                S::F32x16::load_slice(token, &d.y[start..]) * scale,
+                S::F32x16::load_slice(token, &d.z[start..]) * scale,
+            ];
+            let ahead = if frame.backward { d[z].lt(zero) } else { zero.lt(d[z]) };
+            sound = sound & ahead & is_dominant(d, frame.axis) & zero.le(t_min(token, walk, start));
+        }
+        sound.all()
+    }
+
+    /// Take the rays from `first` on, which fit the frame.
+    #[inline(always)]
+    pub(super) fn take<S: Simd, G: Goal>(&mut self, token: S, walk: &Walk<'_, G>, first: usize, frame: &Frame) {
         self.first = first;
+        let start = walk.start + first;
         let [x, y, z] = renamed(frame.axis);
-        let (zero, one) = (S::F32x16::splat(token, 0.0), S::F32x16::splat(token, 1.0));
+        let one = S::F32x16::splat(token, 1.0);
         let scale = S::F32x16::splat(token, walk.tree.scale());
         let has_spheres = !walk.tree.leaves.spheres.is_empty();
         let (direction, limits) = (walk.batch.direction, walk.rays.limits(first));
-        let mut sound = zero.le(zero);
         for row in 0..ROWS {
             let start = start + LANES * row;
             let d = [
@@ -88,12 +110,6 @@ impl Group {
                 S::F32x16::load_slice(token, &direction.y[start..]) * scale,
                 S::F32x16::load_slice(token, &direction.z[start..]) * scale,
             ];
-            let t_min = match walk.batch.t_min {
-                ray::Row::Each(t_min) => S::F32x16::load_slice(token, &t_min[start..]),
-                ray::Row::All(t_min) => S::F32x16::splat(token, t_min),
-            };
-            let ahead = if frame.backward { d[z].lt(zero) } else { zero.lt(d[z]) };
-            sound = sound & ahead & is_dominant(d, frame.axis) & zero.le(t_min);
             self.direction[0].store::<S>(row, d[0]);
             self.direction[1].store::<S>(row, d[1]);
             self.direction[2].store::<S>(row, d[2]);
@@ -103,11 +119,10 @@ impl Group {
             if has_spheres {
                 self.inverse_length_squared.store::<S>(row, one / Vec3::from(d).length_squared());
             }
-            self.t_min.store::<S>(row, t_min);
+            self.t_min.store::<S>(row, t_min(token, walk, start));
             self.limit.store::<S>(row, S::F32x16::load_slice(token, &limits[LANES * row..]));
             self.found[row] = [NONE; LANES];
         }
-        sound.all()
     }
 
     /// The least and the greatest of some lanes and of the shears along an axis, times a sign.
@@ -233,6 +248,15 @@ impl Group {
             let found = <S::F32x16 as F32Lanes>::U32::load(token, &self.found[row]);
             walk.goal.settle_row::<S::F32x16>(token, self.first + LANES * row, found);
         }
+    }
+}
+
+/// Lower ends of the ranges of a row from `start` of the batch on.
+#[inline(always)]
+fn t_min<S: Simd, G: Goal>(token: S, walk: &Walk<'_, G>, start: usize) -> S::F32x16 {
+    match walk.batch.t_min {
+        ray::Row::Each(t_min) => S::F32x16::load_slice(token, &t_min[start..]),
+        ray::Row::All(t_min) => S::F32x16::splat(token, t_min),
     }
 }
 

@@ -75,9 +75,10 @@ impl Packet {
         let mut taken = 0;
         for group in &mut self.groups[..self.width] {
             let first = first + PACKET * taken;
-            if first + PACKET > walk.rays.len() || !group.take(token, walk, first, &self.frame) {
+            if first + PACKET > walk.rays.len() || !Group::fits(token, walk, first, &self.frame) {
                 break;
             }
+            group.take(token, walk, first, &self.frame);
             taken += 1;
         }
         taken
