@@ -68,7 +68,7 @@ impl Group {
     #[inline(always)]
     pub(super) fn fits<S: Simd, G: Goal>(token: S, walk: &Walk<'_, G>, first: usize, frame: &Frame) -> bool {
         let start = walk.start + first;
-        let (o, d) = (walk.batch.origin, walk.batch.direction);
+        let o = walk.batch.origin;
         if !(same(token, &o.x[start..], frame.apex.x)
             && same(token, &o.y[start..], frame.apex.y)
             && same(token, &o.z[start..], frame.apex.z))
@@ -77,16 +77,10 @@ impl Group {
         }
         let [.., z] = renamed(frame.axis);
         let zero = S::F32x16::splat(token, 0.0);
-        // As they will be: tiny ones may vanish.
-        let scale = S::F32x16::splat(token, walk.tree.scale());
         let mut sound = zero.le(zero);
         for row in 0..ROWS {
             let start = start + LANES * row;
-            let d = [
-                S::F32x16::load_slice(token, &d.x[start..]) * scale,
-                S::F32x16::load_slice(token, &d.y[start..]) * scale,
-                S::F32x16::load_slice(token, &d.z[start..]) * scale,
-            ];
+            let d = scaled(token, walk, start);
             let ahead = if frame.backward { d[z].lt(zero) } else { zero.lt(d[z]) };
             sound = sound & ahead & is_dominant(d, frame.axis) & zero.le(t_min(token, walk, start));
         }
@@ -100,16 +94,11 @@ impl Group {
         let start = walk.start + first;
         let [x, y, z] = renamed(frame.axis);
         let one = S::F32x16::splat(token, 1.0);
-        let scale = S::F32x16::splat(token, walk.tree.scale());
         let has_spheres = !walk.tree.leaves.spheres.is_empty();
-        let (direction, limits) = (walk.batch.direction, walk.rays.limits(first));
+        let limits = walk.rays.limits(first);
         for row in 0..ROWS {
             let start = start + LANES * row;
-            let d = [
-                S::F32x16::load_slice(token, &direction.x[start..]) * scale,
-                S::F32x16::load_slice(token, &direction.y[start..]) * scale,
-                S::F32x16::load_slice(token, &direction.z[start..]) * scale,
-            ];
+            let d = scaled(token, walk, start);
             self.direction[0].store::<S>(row, d[0]);
             self.direction[1].store::<S>(row, d[1]);
             self.direction[2].store::<S>(row, d[2]);
@@ -249,6 +238,17 @@ impl Group {
             walk.goal.settle_row::<S::F32x16>(token, self.first + LANES * row, found);
         }
     }
+}
+
+/// Directions of a row from `start` of the batch on, in the tree's scale: in which tiny ones may vanish.
+#[inline(always)]
+fn scaled<S: Simd, G: Goal>(token: S, walk: &Walk<'_, G>, start: usize) -> [S::F32x16; 3] {
+    let (d, scale) = (walk.batch.direction, S::F32x16::splat(token, walk.tree.scale()));
+    [
+        S::F32x16::load_slice(token, &d.x[start..]) * scale,
+        S::F32x16::load_slice(token, &d.y[start..]) * scale,
+        S::F32x16::load_slice(token, &d.z[start..]) * scale,
+    ]
 }
 
 /// Lower ends of the ranges of a row from `start` of the batch on.
