@@ -80,7 +80,7 @@ pub(in crate::tree) struct PreparedRays {
     any_slack: bool,
 }
 
-/// A set of packets of a chunk.
+/// A set of the smallest packets of a chunk.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Packets([u64; Self::WORDS]);
 

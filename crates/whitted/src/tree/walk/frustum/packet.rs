@@ -193,3 +193,25 @@ impl Packet {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packets_are_as_large_as_pays() {
+        let mut packet = Packet::default();
+        let mut widths = Vec::new();
+        let (few, many) = (u64::from(PATIENCE), u64::from(PATIENCE) + 1);
+        for (is_halved, tests) in
+            [(true, many), (true, few), (true, many), (false, many), (false, few), (false, 0), (false, 0)]
+        {
+            packet.adapt(is_halved, tests);
+            widths.push(packet.width);
+        }
+        assert_eq!(widths, [2, 1, 1, 1, 2, 4, 4]);
+        packet.adapt(true, many);
+        packet.begin();
+        assert_eq!(packet.width, GROUPS);
+    }
+}

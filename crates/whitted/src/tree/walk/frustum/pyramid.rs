@@ -18,7 +18,7 @@ pub(super) struct Pyramid {
     apex: [f32; 3],
     /// Slopes of the planes below and above along x, then y, to the distance along the dominant axis.
     slope: [[f32; 2]; 2],
-    /// How long their normals are: only where there are spheres.
+    /// How long their normals are, for spheres.
     length: [[f32; 2]; 2],
     /// How far outside its box a primitive may be found (padding included), and outside of itself.
     slack: f32,
